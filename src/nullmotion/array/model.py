@@ -1,0 +1,200 @@
+"""A control moment gyroscope array: axes, momenta, limits.
+
+Conventions (docs/conventions.md): CMG i has gimbal axis g_i, spin axis s_i at
+delta_i = 0 and t_i = g_i x s_i, all unit vectors in the body frame B. Then
+
+    h_i(delta_i) = h0_i (s_i cos delta_i + t_i sin delta_i)
+    h(delta)     = bias + sum_i h_i,      A = dh/d(delta)
+
+and the torque on the vehicle is -A delta_dot - omega x h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+from nullmotion import ops
+from nullmotion.array.checks import as_vectors, checked_axes, per_cmg, torque_basis
+from nullmotion.errors import InputError
+
+RateLimitMode = Literal["scale", "clip"]
+
+
+@dataclass(frozen=True, eq=False)
+class CmgArray:
+    """An array of n single-gimbal control moment gyroscopes with m torque dimensions.
+
+    Args:
+        gimbal_axes: Unit gimbal axes g_i in B, (n, 3).
+        spin_axes: Unit spin axes s_i at delta_i = 0 in B, (n, 3), perpendicular to g_i.
+        h0: Spin momentum of each CMG [N m s], one number or (n,).
+        rate_limit: Largest gimbal rate [rad/s], one number or (n,); infinite if none.
+        rate_limit_mode: ``scale`` all rates by one factor (keeps the torque's
+            direction) or ``clip`` each by itself.
+        angle_limits: Lowest and highest gimbal angle [rad], (2,) or (n, 2).
+        momentum_bias: Constant momentum beside the CMGs' [N m s], (3,), such as a frozen CMG's.
+        torque_axes: Orthonormal directions in which the array gives torque, (m, 3); by
+            default all of B, or the common plane when all gimbal axes are parallel.
+        label: Name for reports.
+
+    Raises:
+        InputError: For axes that are not unit vectors or not perpendicular, negative
+            momenta, limits that are not positive, and the like.
+    """
+
+    gimbal_axes: np.ndarray
+    spin_axes: np.ndarray
+    h0: np.ndarray = field(default_factory=lambda: np.array(1.0))
+    rate_limit: np.ndarray = field(default_factory=lambda: np.array(np.inf))
+    rate_limit_mode: RateLimitMode = "scale"
+    angle_limits: np.ndarray = field(default_factory=lambda: np.array([-np.inf, np.inf]))
+    momentum_bias: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    torque_axes: np.ndarray | None = None
+    label: str = "custom"
+
+    def __post_init__(self) -> None:
+        """Check and normalise; symbols are put in by `nullmotion.tree` without this."""
+        gimbal, spin = checked_axes(self.gimbal_axes, self.spin_axes)
+        n = len(gimbal)
+        put = object.__setattr__
+        put(self, "gimbal_axes", gimbal)
+        put(self, "spin_axes", spin)
+        put(self, "h0", per_cmg("h0", self.h0, n, "finite and not negative", lambda v: (v >= 0) & np.isfinite(v)))
+        if not np.any(self.h0 > 0):
+            raise InputError("h0", self.h0.tolist(), "at least one CMG with momentum")
+        put(self, "rate_limit", per_cmg("rate_limit", self.rate_limit, n, "above 0 (rad/s)", lambda v: v > 0))
+        if self.rate_limit_mode not in ("scale", "clip"):
+            raise InputError("rate_limit_mode", self.rate_limit_mode, "'scale' or 'clip'")
+        limits = np.broadcast_to(np.asarray(self.angle_limits, float), (n, 2)).copy()
+        if not np.all(limits[:, 0] < limits[:, 1]):
+            raise InputError("angle_limits", limits.tolist(), "lower limit below upper limit (rad)")
+        put(self, "angle_limits", limits)
+        put(self, "momentum_bias", as_vectors("momentum_bias", self.momentum_bias, 1)[0])
+        put(self, "torque_axes", torque_basis(gimbal) if self.torque_axes is None else self._checked_basis())
+
+    def _checked_basis(self) -> np.ndarray:
+        basis = as_vectors("torque_axes", self.torque_axes)
+        if not np.allclose(basis @ basis.T, np.eye(len(basis)), atol=1e-9):
+            raise InputError("torque_axes", basis.tolist(), "orthonormal rows")
+        return basis
+
+    @property
+    def n(self) -> int:
+        """Number of CMGs."""
+        return len(self.gimbal_axes)
+
+    @property
+    def m(self) -> int:
+        """Number of torque dimensions."""
+        return len(self._basis)
+
+    @property
+    def _basis(self) -> np.ndarray:
+        assert self.torque_axes is not None
+        return self.torque_axes
+
+    @property
+    def transverse_axes(self) -> np.ndarray:
+        """Torque axes t_i = g_i x s_i at delta_i = 0, (n, 3)."""
+        g, s = self.gimbal_axes, self.spin_axes
+        return np.stack(
+            [
+                g[:, 1] * s[:, 2] - g[:, 2] * s[:, 1],
+                g[:, 2] * s[:, 0] - g[:, 0] * s[:, 2],
+                g[:, 0] * s[:, 1] - g[:, 1] * s[:, 0],
+            ],
+            axis=1,
+        )
+
+    @property
+    def mean_momentum(self) -> Any:
+        """Mean spin momentum of the working CMGs [N m s]: the scale of every measure."""
+        working = ops.where(ops.less(0.0, self.h0), 1.0, 0.0)
+        return sum(self.h0) / sum(working)
+
+    @property
+    def reference_rate(self) -> Any:
+        """Gimbal rate that laws scale their own rates by: the least rate limit, pi rad/s if none."""
+        least = ops.amin(self.rate_limit)
+        return ops.where(ops.less(least, np.inf), least, np.pi)
+
+    def _spin(self) -> Any:
+        return (self.spin_axes @ self._basis.T) * self.h0[:, None]
+
+    def _transverse(self) -> Any:
+        return (self.transverse_axes @ self._basis.T) * self.h0[:, None]
+
+    def rotor_momenta(self, delta: Any) -> Any:
+        """Return each CMG's momentum h_i [N m s], (..., n, m)."""
+        delta = np.asarray(delta)
+        return ops.cos(delta)[..., None] * self._spin() + ops.sin(delta)[..., None] * self._transverse()
+
+    def momentum(self, delta: Any) -> Any:
+        """Return the array's momentum h(delta) [N m s], (..., m), for angles (..., n) [rad]."""
+        delta = np.asarray(delta)
+        turning = ops.cos(delta) @ self._spin() + ops.sin(delta) @ self._transverse()
+        return turning + self._basis @ self.momentum_bias
+
+    def jacobian(self, delta: Any) -> Any:
+        """Return A = dh/d(delta) [N m s/rad], (..., m, n), for angles (..., n) [rad]."""
+        delta = np.asarray(delta)
+        return ops.cos(delta)[..., None, :] * self._transverse().T - ops.sin(delta)[..., None, :] * self._spin().T
+
+    def unit_jacobian(self, delta: Any) -> Any:
+        """Return A divided by `mean_momentum` (dimensionless), (..., m, n)."""
+        return self.jacobian(delta) / self.mean_momentum
+
+    def limited(self, rates: Any) -> Any:
+        """Return gimbal rates within the rate limit, by `rate_limit_mode` [rad/s]."""
+        if self.rate_limit_mode == "clip":
+            return ops.clip(rates, -self.rate_limit, self.rate_limit)
+        excess = ops.amax(ops.absolute(rates) / self.rate_limit)
+        return rates / ops.where(ops.less(1.0, excess), excess, 1.0)
+
+    def within_angle_limits(self, delta: Any) -> Any:
+        """Return angles stopped at the gimbals' end stops [rad]."""
+        if not self.has_angle_limits:
+            return delta
+        return ops.clip(delta, self.angle_limits[:, 0], self.angle_limits[:, 1])
+
+    @property
+    def has_angle_limits(self) -> bool:
+        """Whether any gimbal has an end stop."""
+        return bool(np.isfinite(np.asarray(self.angle_limits, float)).any())
+
+    def without(self, failed: int | Iterable[int], frozen_at: float | Iterable[float] | None = None) -> CmgArray:
+        """Return the array after CMGs failed.
+
+        Args:
+            failed: Index of a CMG counted from 0, or several.
+            frozen_at: Gimbal angle [rad] at which each failed CMG stays with its wheel
+                spinning, its momentum kept as bias; without it the momentum is gone.
+
+        Raises:
+            InputError: For an index out of range, or when no CMG would be left.
+        """
+        gone = sorted({int(failed)} if isinstance(failed, (int, np.integer)) else {int(i) for i in failed})
+        if not gone or gone[0] < 0 or gone[-1] >= self.n or len(gone) == self.n:
+            raise InputError("failed CMG", failed, f"indices 0 to {self.n - 1}, at least one CMG left")
+        keep = [i for i in range(self.n) if i not in gone]
+        bias = self.momentum_bias
+        if frozen_at is not None:
+            angles = np.broadcast_to(np.asarray(frozen_at, float), (len(gone),))
+            c, s = np.cos(angles)[:, None], np.sin(angles)[:, None]
+            held = c * self.spin_axes[gone] + s * self.transverse_axes[gone]
+            bias = bias + self.h0[gone] @ held
+        return CmgArray(
+            self.gimbal_axes[keep],
+            self.spin_axes[keep],
+            self.h0[keep],
+            self.rate_limit[keep],
+            self.rate_limit_mode,
+            self.angle_limits[keep],
+            bias,
+            self.torque_axes,
+            f"{self.label} without CMG {', '.join(str(i) for i in gone)}",
+        )

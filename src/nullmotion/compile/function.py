@@ -1,0 +1,125 @@
+"""Compile straight-line source to a function over batches of inputs."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from nullmotion import tree
+from nullmotion.compile import llvm
+from nullmotion.compile.program import Program, trace
+
+
+def map_source(program: Program, width: int) -> str:
+    """Return IR of ``map(in, out, stride, lane0, lane1)``: lanes side by side, values apart.
+
+    Value v of lane l stands at ``in[v*stride + l]``; outputs alike, the status
+    (0 or 1 for each guard, in the order of the program's guards) behind them.
+    """
+    shape = llvm.Shape(width)
+    lines = ["define void @map(ptr noalias %in, ptr noalias %out, i64 %stride, i64 %lane0, i64 %lane1) #0 {"]
+    lines += ["entry:", "  br label %lane", "lane:"]
+    lines += ["  %l = phi i64 [%lane0, %entry], [%next, %lane]"]
+    names = []
+    for v in range(len(program.inputs)):
+        lines += load(shape, "%in", f"{v}", "%stride", "%l", f"%in{v}")
+        names.append(f"%in{v}")
+    code, outputs, guards = llvm.body(program, names, shape, "v")
+    lines += [f"  {line}" for line in code]
+    for j, (_, condition) in enumerate(guards.items()):
+        zero, one = shape.constant(0.0), shape.constant(1.0)
+        lines.append(f"  %guard{j} = select {shape.boolean} {condition}, {shape.real} {zero}, {shape.real} {one}")
+        outputs.append(f"%guard{j}")
+    for v, name in enumerate(outputs):
+        lines += store(shape, "%out", f"{v}", "%stride", "%l", name, f"%out{v}")
+    lines += [f"  %next = add i64 %l, {width}", "  %more = icmp slt i64 %next, %lane1"]
+    lines += ["  br i1 %more, label %lane, label %end", "end:", "  ret void", "}"]
+    return "\n".join([*llvm.declarations(shape), *lines, llvm.ATTRIBUTES])
+
+
+def load(shape: llvm.Shape, base: str, row: str, stride: str, lane: str, name: str) -> list[str]:
+    """Return IR that loads lanes ``lane...`` of row ``row``."""
+    return [*_address(base, row, stride, lane, name), f"  {name} = load {shape.real}, ptr {name}.p, align 8"]
+
+
+def store(shape: llvm.Shape, base: str, row: str, stride: str, lane: str, value: str, name: str) -> list[str]:
+    """Return IR that stores lanes ``lane...`` of row ``row``."""
+    return [*_address(base, row, stride, lane, name), f"  store {shape.real} {value}, ptr {name}.p, align 8"]
+
+
+def _address(base: str, row: str, stride: str, lane: str, name: str) -> list[str]:
+    return [
+        f"  {name}.r = mul i64 {stride}, {row}",
+        f"  {name}.i = add i64 {name}.r, {lane}",
+        f"  {name}.p = getelementptr double, ptr {base}, i64 {name}.i",
+    ]
+
+
+MAP_TYPES = (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64)
+
+
+class CompiledFunction:
+    """A compiled function of records; every argument carries a leading batch axis."""
+
+    def __init__(self, program: Program, result: Any, width: int, level: int = 2) -> None:
+        """Compile ``program``; ``result`` shows the shape of what it returns."""
+        self.program, self.width = program, width
+        self._result = result
+        self._machine = llvm.Machine(map_source(program, width), level)
+        self._map = self._machine.function("map", *MAP_TYPES)
+        self.status: np.ndarray = np.zeros(0)
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Evaluate on batched records; scalars are given as arrays over the batch."""
+        rows = np.concatenate([_rows(a) for a in arguments])
+        count = rows.shape[1]
+        stride = -(-count // self.width) * self.width
+        inputs = np.empty((rows.shape[0], stride))
+        inputs[:, :count] = rows
+        inputs[:, count:] = rows[:, -1:]
+        flags = len(self.program.guards)
+        outputs = np.empty((len(self.program.outputs) + flags, stride))
+        self._map(inputs.ctypes.data, outputs.ctypes.data, stride, 0, stride)
+        self.status = outputs[len(self.program.outputs) :, :count].astype(bool)
+        return _unrows(self._result, iter(outputs[: len(self.program.outputs), :count]), count)
+
+
+def _rows(record: Any) -> np.ndarray:
+    """Return a record of batched arrays as rows (value, run)."""
+    if isinstance(record, (tuple, list)):
+        parts = [_rows(r) for r in record]
+        return np.concatenate(parts) if parts else np.empty((0, 0))
+    array = np.asarray(record, float)
+    return array.reshape(len(array), -1).T
+
+
+def _unrows(like: Any, rows: Any, count: int) -> Any:
+    if isinstance(like, tuple):
+        parts = [_unrows(child, rows, count) for child in like]
+        return type(like)(*parts) if hasattr(like, "_fields") else tuple(parts)
+    values = [next(rows) for _ in tree.flatten(like)]
+    if not isinstance(like, np.ndarray):
+        return values[0]
+    return np.stack(values, axis=-1).reshape(count, *like.shape) if values else np.empty((count, *like.shape))
+
+
+def compile_function(
+    function: Callable[..., Any], *examples: Any, width: int | None = None, fuse: bool | None = None
+) -> CompiledFunction:
+    """Trace and compile ``function``; ``examples`` show each argument's shape (without batch axis).
+
+    Args:
+        function: Source without data-dependent branches.
+        *examples: Floats, arrays or tuples of them.
+        width: Lanes of a vector; the host's by default.
+        fuse: Fuse multiply-adds; by default where the CPU has the instruction.
+
+    Raises:
+        TraceError: When the source decides by a value.
+    """
+    machine = llvm.host()
+    program, result = trace(function, *examples, fuse=machine.fma if fuse is None else fuse)
+    return CompiledFunction(program, result, width or machine.lanes)

@@ -1,0 +1,440 @@
+"""Symbols that record what is done to them, and the tape they record on.
+
+Plain source over NumPy object arrays of `Symbol` runs once and leaves a flat
+list of operations. Equal expressions are recorded once, constants are folded
+as they appear, and `Tape.program` drops what no output needs.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from nullmotion.compile.operations import OPERATIONS
+from nullmotion.errors import TraceError
+
+_PACKAGE = str(Path(__file__).resolve().parent.parent)
+
+
+@dataclass(frozen=True)
+class Node:
+    """One recorded operation; ``value`` is set for constants and input names."""
+
+    op: str
+    args: tuple[int, ...] = ()
+    value: float | str | None = None
+
+    @property
+    def kind(self) -> str:
+        """Kind of the node's value, ``real`` or ``bool``."""
+        if self.op == "constant":
+            return "bool" if isinstance(self.value, bool) else "real"
+        return "real" if self.op == "input" else OPERATIONS[self.op].result
+
+
+@dataclass
+class Tape:
+    """A growing list of operations; every `Symbol` belongs to one."""
+
+    nodes: list[Node] = field(default_factory=list)
+    guards: dict[str, list[int]] = field(default_factory=dict)
+    _index: dict[tuple[Any, ...], int] = field(default_factory=dict)
+
+    def input(self, name: str) -> Symbol:
+        """Record a new input."""
+        self.nodes.append(Node("input", value=name))
+        return Symbol(self, len(self.nodes) - 1)
+
+    def inputs(self, name: str, count: int) -> np.ndarray:
+        """Record ``count`` inputs as an object array."""
+        out = np.empty(count, dtype=object)
+        out[:] = [self.input(f"{name}[{i}]") for i in range(count)]
+        return out
+
+    def constant(self, value: float | bool) -> int:
+        """Return the node of a constant; equal bits share one node."""
+        plain = bool(value) if isinstance(value, (bool, np.bool_)) else float(value)
+        key = ("constant", type(plain), repr(plain))
+        if key not in self._index:
+            self.nodes.append(Node("constant", value=plain))
+            self._index[key] = len(self.nodes) - 1
+        return self._index[key]
+
+    def record(self, op: str, *args: int) -> int:
+        """Return the node of ``op(args)``, recorded once and simplified."""
+        folded = self._fold(op, args)
+        if folded is not None:
+            return folded
+        if OPERATIONS[op].commutative and args[0] > args[1]:
+            args = (args[1], args[0])
+        key = (op, *args)
+        if key not in self._index:
+            self.nodes.append(Node(op, args))
+            self._index[key] = len(self.nodes) - 1
+        return self._index[key]
+
+    def _fold(self, op: str, args: tuple[int, ...]) -> int | None:
+        nodes = [self.nodes[i] for i in args]
+        if all(n.op == "constant" for n in nodes):
+            with np.errstate(all="ignore"):
+                return self.constant(np.asarray(OPERATIONS[op].evaluate(*[n.value for n in nodes]))[()])
+        rule = _RULES.get(op)
+        return rule(self, args, [n.value if n.op == "constant" else None for n in nodes]) if rule else None
+
+    def guard(self, flag: str, condition: int) -> None:
+        """Remember that ``condition`` must hold, or the status ``flag`` is raised."""
+        known = self.guards.setdefault(flag, [])
+        if condition not in known:
+            known.append(condition)
+
+
+def _negated(tape: Tape, i: int) -> int | None:
+    node = tape.nodes[i]
+    return node.args[0] if node.op == "neg" else None
+
+
+def _add(t: Tape, a: tuple[int, ...], c: Sequence[Any]) -> int | None:
+    if c[0] == 0.0:
+        return a[1]
+    if c[1] == 0.0:
+        return a[0]
+    if (n := _negated(t, a[1])) is not None:
+        return t.record("sub", a[0], n)
+    if (n := _negated(t, a[0])) is not None:
+        return t.record("sub", a[1], n)
+    return None
+
+
+def _sub(t: Tape, a: tuple[int, ...], c: Sequence[Any]) -> int | None:
+    if c[1] == 0.0:
+        return a[0]
+    if c[0] == 0.0:
+        return t.record("neg", a[1])
+    if a[0] == a[1]:
+        return t.constant(0.0)
+    if (n := _negated(t, a[1])) is not None:
+        return t.record("add", a[0], n)
+    return None
+
+
+def _mul(t: Tape, a: tuple[int, ...], c: Sequence[Any]) -> int | None:
+    for value, other in ((c[0], a[1]), (c[1], a[0])):
+        if value == 0.0:
+            return t.constant(0.0)
+        if value == 1.0:
+            return other
+        if value == -1.0:
+            return t.record("neg", other)
+    for i, other in ((a[0], a[1]), (a[1], a[0])):
+        if (n := _negated(t, i)) is not None:
+            return t.record("neg", t.record("mul", n, other))
+    return None
+
+
+def _div(t: Tape, a: tuple[int, ...], c: Sequence[Any]) -> int | None:
+    if c[1] is None or c[1] == 0.0 or not math.isfinite(c[1]):
+        return None
+    exact = abs(math.frexp(c[1])[0]) == 0.5 and abs(math.frexp(c[1])[1]) < 1000
+    return t.record("mul", a[0], t.constant(1.0 / c[1])) if exact else None
+
+
+def _neg(t: Tape, a: tuple[int, ...], c: Sequence[Any]) -> int | None:
+    return _negated(t, a[0])
+
+
+def _select(t: Tape, a: tuple[int, ...], c: Sequence[Any]) -> int | None:
+    if c[0] is not None:
+        return a[1] if c[0] else a[2]
+    return a[1] if a[1] == a[2] else None
+
+
+def _logic(keep: bool) -> Callable[[Tape, tuple[int, ...], Sequence[Any]], int | None]:
+    def rule(t: Tape, a: tuple[int, ...], c: Sequence[Any]) -> int | None:
+        for value, other in ((c[0], a[1]), (c[1], a[0])):
+            if value is not None:
+                return other if bool(value) is keep else t.constant(not keep)
+        return a[0] if a[0] == a[1] else None
+
+    return rule
+
+
+# x*0 -> 0 and x-x -> 0 drop a NaN or infinity in x; the zeros of the axes make it worth it
+_RULES: dict[str, Callable[[Tape, tuple[int, ...], Sequence[Any]], int | None]] = {
+    "add": _add,
+    "sub": _sub,
+    "mul": _mul,
+    "div": _div,
+    "neg": _neg,
+    "select": _select,
+    "and": _logic(True),
+    "or": _logic(False),
+}
+
+
+def _user_frame() -> tuple[str, int]:
+    """Return file and line of the innermost frame outside the tracing machinery."""
+    frame = sys._getframe(1)
+    place = ("", 0)
+    while frame is not None:
+        name = frame.f_code.co_filename
+        if "numpy" not in name and not name.startswith(str(Path(_PACKAGE) / "compile")):
+            if not name.endswith("nullmotion/ops.py"):
+                return name, frame.f_lineno
+        frame = frame.f_back  # type: ignore[assignment]
+    return place
+
+
+class Symbol:
+    """A real or boolean value that is not known yet."""
+
+    __slots__ = ("node", "tape")
+
+    def __init__(self, tape: Tape, node: int) -> None:
+        """Refer to ``node`` of ``tape``."""
+        self.tape, self.node = tape, node
+
+    @property
+    def kind(self) -> str:
+        """``real`` or ``bool``."""
+        return self.tape.nodes[self.node].kind
+
+    def _apply(self, op: str, *others: Any) -> Any:
+        args = [self.node]
+        for other in others:
+            if isinstance(other, Symbol):
+                args.append(other.node)
+            elif isinstance(other, (float, int, bool, np.number, np.bool_)):
+                args.append(self.tape.constant(other))
+            else:
+                return NotImplemented
+        return Symbol(self.tape, self.tape.record(op, *args))
+
+    def _reflected(self, op: str, other: Any) -> Any:
+        if isinstance(other, (float, int, np.number)):
+            return Symbol(self.tape, self.tape.record(op, self.tape.constant(other), self.node))
+        return NotImplemented
+
+    def __add__(self, other: Any) -> Any:
+        return self._apply("add", other)
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Any) -> Any:
+        return self._apply("sub", other)
+
+    def __rsub__(self, other: Any) -> Any:
+        return self._reflected("sub", other)
+
+    def __mul__(self, other: Any) -> Any:
+        return self._apply("mul", other)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Any:
+        return self._apply("div", other)
+
+    def __rtruediv__(self, other: Any) -> Any:
+        return self._reflected("div", other)
+
+    def __neg__(self) -> Symbol:
+        return self._apply("neg")
+
+    def __pos__(self) -> Symbol:
+        return self
+
+    def __abs__(self) -> Symbol:
+        return self._apply("fabs")
+
+    def __pow__(self, power: Any) -> Any:
+        return integer_power(self, power)
+
+    def __lt__(self, other: Any) -> Any:
+        return self._apply("less", other)
+
+    def __le__(self, other: Any) -> Any:
+        return self._apply("less_equal", other)
+
+    def __gt__(self, other: Any) -> Any:
+        return self._reflected_compare("less", other)
+
+    def __ge__(self, other: Any) -> Any:
+        return self._reflected_compare("less_equal", other)
+
+    def _reflected_compare(self, op: str, other: Any) -> Any:
+        if isinstance(other, Symbol):
+            return other._apply(op, self)
+        return self._reflected(op, other)
+
+    def __and__(self, other: Any) -> Any:
+        return self._apply("and", other)
+
+    __rand__ = __and__
+
+    def __or__(self, other: Any) -> Any:
+        return self._apply("or", other)
+
+    __ror__ = __or__
+
+    def __invert__(self) -> Symbol:
+        return self._apply("not")
+
+    def __bool__(self) -> bool:
+        file, line = _user_frame()
+        raise TraceError(
+            "this line decides by a value that is not known while the source is traced; "
+            "use nullmotion.ops.where, minimum, maximum, clip or sign instead of if, and, or, min, max",
+            file,
+            line,
+        )
+
+    def __float__(self) -> float:
+        node = self.tape.nodes[self.node]
+        if node.op == "constant":
+            return float(node.value)  # type: ignore[arg-type]
+        file, line = _user_frame()
+        raise TraceError("this line needs the number behind a value that is still a symbol", file, line)
+
+    def __repr__(self) -> str:
+        node = self.tape.nodes[self.node]
+        return f"Symbol({node.op}{node.value if node.value is not None else list(node.args)})"
+
+    # NumPy calls these on the elements of object arrays: np.sin(x) -> x.sin()
+    def sqrt(self) -> Symbol:
+        return self._apply("sqrt")
+
+    def rint(self) -> Symbol:
+        return self._apply("rint")
+
+    def sin(self) -> Symbol:
+        return _elementary("sin", self)
+
+    def cos(self) -> Symbol:
+        return _elementary("cos", self)
+
+    def exp(self) -> Symbol:
+        return _elementary("exp", self)
+
+    def log(self) -> Symbol:
+        return _elementary("log", self)
+
+    def arccos(self) -> Symbol:
+        return _elementary("acos", self)
+
+    def arctan2(self, other: Any) -> Symbol:
+        return _elementary("atan2", self, other)
+
+
+def _elementary(name: str, *args: Any) -> Symbol:
+    from nullmotion.compile import elementary
+
+    return getattr(elementary, name)(*args)
+
+
+def integer_power(x: Any, power: Any) -> Any:
+    """Return x**power by repeated squaring; x**0.5 is the square root."""
+    if power == 0.5:
+        return x.sqrt()
+    if power != int(power):
+        raise TraceError(f"power {power}: use nullmotion.ops.power for powers that are not whole")
+    if power < 0:
+        return 1.0 / integer_power(x, -power)
+    result, base, n = None, x, int(power)
+    while n:
+        if n & 1:
+            result = base if result is None else result * base
+        n >>= 1
+        base = base * base if n else base
+    return 1.0 if result is None else result
+
+
+def apply(op: str, *args: Any) -> Any:
+    """Record ``op`` on the tape of its symbolic operands, or evaluate it on floats."""
+    tape = next((a.tape for a in args if isinstance(a, Symbol)), None)
+    if tape is None:
+        return OPERATIONS[op].evaluate(*args)
+    ids = [a.node if isinstance(a, Symbol) else tape.constant(a) for a in args]
+    return Symbol(tape, tape.record(op, *ids))
+
+
+def fma(a: Any, b: Any, c: Any) -> Any:
+    """Return a*b + c, rounded once."""
+    return apply("fma", a, b, c)
+
+
+def product(a: Any, b: Any) -> Any:
+    """Return a*b, rounded: never fused with a sum that uses it."""
+    return apply("product", a, b)
+
+
+def sqrt(a: Any) -> Any:
+    """Return the square root."""
+    return apply("sqrt", a)
+
+
+def rint(a: Any) -> Any:
+    """Return the nearest whole number, ties to even."""
+    return apply("rint", a)
+
+
+def copysign(a: Any, b: Any) -> Any:
+    """Return |a| with the sign of b."""
+    return apply("copysign", a, b)
+
+
+def equal(a: Any, b: Any) -> Any:
+    """Return a == b as a boolean."""
+    return apply("equal", a, b)
+
+
+def select(condition: Any, a: Any, b: Any) -> Any:
+    """Return a where the condition holds, else b (reals or booleans)."""
+    if getattr(a, "kind", None) == "bool" or getattr(b, "kind", None) == "bool":
+        return (condition & a) | (~condition & b)
+    return apply("select", condition, a, b)
+
+
+def minimum(a: Any, b: Any) -> Any:
+    """Return a if a < b else b (b when either is NaN)."""
+    return select(apply("less", a, b), a, b)
+
+
+def maximum(a: Any, b: Any) -> Any:
+    """Return a if a > b else b (b when either is NaN)."""
+    return select(apply("less", b, a), a, b)
+
+
+def exponent(a: Any) -> Any:
+    """Return floor(log2 |a|) of a normal number."""
+    return apply("exponent", a)
+
+
+def significand(a: Any) -> Any:
+    """Return a scaled by a power of two into [1, 2) in magnitude."""
+    return apply("significand", a)
+
+
+def power_of_two(k: Any) -> Any:
+    """Return 2.0**k for whole k in [-1022, 1023]."""
+    return apply("power_of_two", k)
+
+
+def bit(k: Any, j: int) -> Any:
+    """Return bit j of the two's complement of a whole number |k| < 2**31."""
+    return apply("bit", k, float(j))
+
+
+def is_odd(k: Any) -> Any:
+    """Return whether a whole number is odd."""
+    return bit(k, 0)
+
+
+def guard(flag: str, condition: Any) -> None:
+    """Ask that ``condition`` holds wherever it is evaluated; a kernel reports ``flag`` if not."""
+    if isinstance(condition, Symbol):
+        condition.tape.guard(flag, condition.node)

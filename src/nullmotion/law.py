@@ -1,0 +1,98 @@
+"""What a steering law is, what it sees and what it promises."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any, ClassVar
+
+import numpy as np
+
+from nullmotion.array.model import CmgArray
+
+
+class Claim(StrEnum):
+    """A promise that the contract tests hold a law to, on every layout it supports."""
+
+    EXACT_TORQUE = "A delta_dot = hdot at regular states"
+    FINITE = "finite rates at every state, singular ones included"
+    BOUNDED = "rates stay below a fixed multiple of |hdot| at every state"
+    ROTATION = "same rates when body axes and command are turned together"
+    SCALING = "same rates when momenta and command grow together"
+    HOMOGENEOUS = "rates grow in proportion to the command"
+    STATELESS = "the answer depends on the observation alone"
+    TIMELESS = "the answer does not depend on the time"
+
+
+@dataclass(frozen=True)
+class Observation:
+    """What a law may see at a sample; the first four are always there.
+
+    Attributes:
+        delta: Measured gimbal angles [rad], (n,).
+        hdot: Wanted rate of the array's momentum [N m], (m,).
+        t: Time of the sample [s], a multiple of the period.
+        period: Time to the next sample [s].
+        delta_dot: Gimbal rates [rad/s], (n,).
+        omega_BN_B: Body rate in B [rad/s], (3,).
+        wheel_speed: Wheel speeds [rad/s], (n,).
+        preview: Planned hdot over the coming samples [N m], (k, m).
+    """
+
+    delta: Any
+    hdot: Any
+    t: Any = 0.0
+    period: Any = 0.01
+    delta_dot: Any = None
+    omega_BN_B: Any = None
+    wheel_speed: Any = None
+    preview: Any = None
+
+
+State = Any  # a float, array, tuple or named tuple of those; () when there is none
+
+
+@dataclass(frozen=True)
+class Law:
+    """Base of steering laws: from an observation to gimbal rates.
+
+    A law is one file under ``laws/`` with one frozen dataclass: its fields are the
+    parameters, under the paper's names. It implements `step`, and `init` when it
+    carries a state. It works in the array's torque space and in units of the
+    array's mean momentum (`CmgArray.unit_jacobian`), so that its defaults suit any
+    array. It never branches on values: `nullmotion.ops.where` and its kin do that.
+
+    Class attributes:
+        name: Name on the command line and in files.
+        full_name: Name in the field.
+        aliases: Other names it is found under.
+        citation: Where it comes from.
+        claims: What it promises.
+        information: What it reads beyond delta, hdot, t and period.
+        traceable: False for a law that solves a problem while it runs (a host law).
+    """
+
+    name: ClassVar[str] = ""
+    full_name: ClassVar[str] = ""
+    aliases: ClassVar[tuple[str, ...]] = ()
+    citation: ClassVar[str] = ""
+    claims: ClassVar[frozenset[Claim]] = frozenset()
+    information: ClassVar[tuple[str, ...]] = ()
+    traceable: ClassVar[bool] = True
+
+    def supports(self, array: CmgArray) -> str:
+        """Return why this law cannot steer the array; an empty string if it can."""
+        return ""
+
+    def init(self, array: CmgArray, delta: Any) -> State:
+        """Return the law's state before its first sample."""
+        return ()
+
+    def step(self, array: CmgArray, obs: Observation, state: State) -> tuple[Any, State]:
+        """Return gimbal rates [rad/s], (n,), before any rate limit, and the next state."""
+        raise NotImplementedError
+
+
+def command_size(array: CmgArray, obs: Observation) -> Any:
+    """Return |hdot| over the mean momentum [rad/s]: the torque asked, in the array's own unit."""
+    return np.sqrt(obs.hdot @ obs.hdot) / array.mean_momentum

@@ -1,0 +1,100 @@
+"""What a metric is: a scalar of one sample of a run, and how a run sums it up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from nullmotion import linalg, ops
+from nullmotion.array.model import CmgArray
+
+Reduction = Literal["min", "max", "rms", "mean", "final"]
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One instant of a run, as floats or symbols; what is derived is computed when asked for.
+
+    Attributes:
+        array: The array as it really is (with the plant's errors).
+        delta: True gimbal angles [rad], (n,).
+        hdot: Commanded rate of momentum [N m], (m,).
+        t: Time since the start [s].
+        rates: Gimbal rates applied from this instant on [rad/s], (n,); at the end of a
+            run, those of the last step.
+        previous_rates: Those of the step before (equal to ``rates`` in the first step).
+        momentum_wanted: h(0) + integral of hdot so far [N m s], (m,).
+        impulse: Integral of A delta_dot so far, by the run's integrator [N m s], (m,).
+    """
+
+    array: CmgArray
+    delta: Any
+    hdot: Any
+    t: Any
+    rates: Any
+    previous_rates: Any
+    momentum_wanted: Any
+    impulse: Any
+
+    @cached_property
+    def jacobian(self) -> Any:
+        """A at delta [N m s/rad], (m, n)."""
+        return self.array.jacobian(self.delta)
+
+    @cached_property
+    def momentum(self) -> Any:
+        """Momentum of the array [N m s], (m,)."""
+        return self.array.momentum(self.delta)
+
+    @cached_property
+    def torque(self) -> Any:
+        """Achieved rate of momentum A delta_dot [N m], (m,); the vehicle gets its negative."""
+        return self.jacobian @ self.rates
+
+    @cached_property
+    def singular_values(self) -> Any:
+        """Singular values of A over the mean momentum, descending, (m,)."""
+        return linalg.svd(self.jacobian / self.array.mean_momentum).s
+
+    @cached_property
+    def command(self) -> Any:
+        """|hdot| [N m]."""
+        return np.sqrt(self.hdot @ self.hdot)
+
+    @cached_property
+    def direction(self) -> Any:
+        """Unit vector of hdot, zero when nothing is commanded, (m,)."""
+        return self.hdot / ops.where(ops.less(0.0, self.command), self.command, 1.0)
+
+
+@dataclass(frozen=True)
+class Metric:
+    """Base of metrics: one file under ``metrics/`` with one frozen dataclass.
+
+    A metric is a scalar of a `Sample` (method `of`, without branches: it runs in the
+    kernel as well), summed up over a run by its ``reductions``: the summary holds
+    ``min_<name>`` and so on, and a scenario may stop at ``<name>_below`` or
+    ``<name>_above``.
+
+    Class attributes:
+        name: Name in summaries and stop conditions; ends in its unit if it has one.
+        title: Label of axes and tables.
+        unit: SI unit, or ``1``.
+        citation: Where it is defined.
+        reductions: How a run sums it up.
+        needs_rates: True if it has no meaning at the end of a run, where no rate applies.
+    """
+
+    name: ClassVar[str] = ""
+    title: ClassVar[str] = ""
+    unit: ClassVar[str] = "1"
+    citation: ClassVar[str] = ""
+    reductions: ClassVar[tuple[Reduction, ...]] = ("min", "final")
+    needs_rates: ClassVar[bool] = False
+
+    def of(self, sample: Sample) -> Any:
+        """Return the metric at one sample."""
+        raise NotImplementedError
