@@ -31,8 +31,9 @@ INLINE void v_sincos(vd x, vd *sin_x, vd *cos_x) {
     s = v_fma(r * z, s, r);
     c = v_fma(z, v_fma(z, c, v_set(-0.5)), v_set(1.0));
     vm swap = v_odd(k_bits);
-    *sin_x = v_flip(v_select(swap, c, s), v_shl(k_bits, 62));
-    *cos_x = v_flip(v_select(swap, s, c), v_shl(v_addi(k_bits, v_seti(1)), 62));
+    vi turned = v_shl(k_bits, 62);
+    *sin_x = v_flip(v_select(swap, c, s), turned);
+    *cos_x = v_flip(v_select_minus(swap, s, c), turned);
 }
 
 /* exp x for x <= 709: x = k ln 2 + r, polynomial of degree 11 by Estrin's scheme. */

@@ -43,6 +43,20 @@ INLINE void multiply(Sym3 g, const vd v[3], vd out[3]) {
     out[2] = g.xz * v[0] + g.yz * v[1] + g.zz * v[2];
 }
 
+/* m += lambda I and its adjugate (off the diagonal: g_xy - lambda m_xy); returns det(m). */
+INLINE vd add_diagonal(Sym3 *m, Sym3 *g, vd lambda) {
+    m->xx += lambda;
+    m->yy += lambda;
+    m->zz += lambda;
+    g->xx = m->yy * m->zz - m->yz * m->yz;
+    g->yy = m->xx * m->zz - m->xz * m->xz;
+    g->zz = m->xx * m->yy - m->xy * m->xy;
+    g->xy -= lambda * m->xy;
+    g->xz -= lambda * m->xz;
+    g->yz -= lambda * m->yz;
+    return determinant(*m, *g);
+}
+
 /* grad_i = -2 h_i^T G a_i with h_i = c s_i + s t_i and a_i = c t_i - s s_i, G = adj(A A^T):
  * -2 [ (2 c^2 - 1) s_i^T G t_i + s c (t_i^T G t_i - s_i^T G s_i) ] */
 INLINE void gradient(Sym3 g, const vd square[4], const vd product[4], vd grad[4]) {
@@ -58,34 +72,40 @@ INLINE void gradient(Sym3 g, const vd square[4], const vd product[4], vd grad[4]
     grad[3] = two[3] * (-cross - lift_x) - 2.0 * product[3] * (even_y + odd_y);
 }
 
-/* rates det(M) in raw, det(M) returned */
-INLINE vd law_sr(const State *x, const vd hdot[3], int with_gradient, vd raw[4]) {
-    vd square[4], product[4], y[3], target[3], grad[4];
+/* Everything that needs gimbal angles only. */
+INLINE void prepare_sr(State *x, int with_gradient) {
+    vd square[4], product[4], grad[4];
+    Plan *p = &x->plan;
     for (int i = 0; i < 4; i++) {
         square[i] = x->c[i] * x->c[i];
         product[i] = x->s[i] * x->c[i];
     }
     Sym3 m = gram(square, product);
-    Sym3 g = adjugate(m);
-    vd lambda = 0.01 * v_exp(-10.0 * determinant(m, g));
-    for (int i = 0; i < 3; i++) target[i] = hdot[i];
+    p->adjugate = adjugate(m);
+    vd lambda = 0.01 * v_exp(-10.0 * determinant(m, p->adjugate));
     if (with_gradient) {
-        vd drift[3];
-        gradient(g, square, product, grad);
+        gradient(p->adjugate, square, product, grad);
         for (int i = 0; i < 4; i++) grad[i] *= GRADIENT_GAIN;
-        array_torque(x->s, x->c, grad, drift);
-        for (int i = 0; i < 3; i++) target[i] -= drift[i];
+        array_torque(x->s, x->c, grad, p->drift);
     }
-    m.xx += lambda;
-    m.yy += lambda;
-    m.zz += lambda;
-    g = adjugate(m);
-    vd det = determinant(m, g);
-    multiply(g, target, y);
+    p->det = add_diagonal(&m, &p->adjugate, lambda);
+    if (with_gradient)
+        for (int i = 0; i < 4; i++) p->null[i] = p->det * grad[i];
+}
+
+/* rates det(M) in raw, det(M) returned */
+INLINE vd law_sr(const State *x, const vd hdot[3], int with_gradient, vd raw[4]) {
+    const Plan *p = &x->plan;
+    vd y[3], target[3];
+    for (int i = 0; i < 3; i++) {
+        target[i] = hdot[i];
+        if (with_gradient) target[i] -= p->drift[i];
+    }
+    multiply(p->adjugate, target, y);
     array_transpose(x->s, x->c, y, raw);
     if (with_gradient)
-        for (int i = 0; i < 4; i++) raw[i] += det * grad[i];
-    return det;
+        for (int i = 0; i < 4; i++) raw[i] += p->null[i];
+    return p->det;
 }
 
 #endif

@@ -11,9 +11,7 @@
 
 #define SWEEPS 4
 #define TINY 1e-290
-
-#define EACH _Pragma("GCC unroll 8") for (int j = 0; j < TILE; j++)
-#define UPTO(n, i) _Pragma("GCC unroll 8") for (int i = 0; i < n; i++)
+#define SMALL 1e-140
 
 /* Householder reflector H = I - tau v v^T with H x = -sign(x0) |x| e0; v overwrites x. */
 INLINE vd reflector(int n, vd *v, vd *tau) {
@@ -57,29 +55,54 @@ INLINE void factor(const State *x, Svd *f) {
 
 INLINE vd dot3(const vd a[3], const vd b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+/* v_rsqrt, line by line over the tile. */
+INLINE void rsqrt_tile(const vd x[TILE], vd y[TILE]) {
+#if W == 8 && !defined(EXACT_RSQRT)
+    vd e[TILE], p[TILE];
+    EACH y[j] = _mm512_rsqrt14_pd(x[j]);
+    EACH e[j] = x[j] * y[j];
+    EACH e[j] = v_fnma(e[j], y[j], v_set(1.0));
+    EACH p[j] = v_fma(e[j], v_set(0.3125), v_set(0.375));
+    EACH p[j] = v_fma(e[j], p[j], v_set(0.5));
+    EACH e[j] *= y[j];
+    EACH y[j] = v_fma(e[j], p[j], y[j]);
+#else
+    EACH y[j] = v_rsqrt(x[j]);
+#endif
+}
+
 INLINE void rotate(vd *a, vd *b, vd c, vd s) {
     vd t = c * *a - s * *b;
     *b = s * *a + c * *b;
     *a = t;
 }
 
-/* The inner Jacobi rotation that makes columns p and r orthogonal:
- * d = |r|^2 - |p|^2, g = p.r, 1/h = (d^2 + 4 g^2)^-1/2, c^2 = (1 + |d|/h) / 2, s = sign(d) g/(h c) */
-INLINE void orthogonalise(Svd *f, int p, int r) {
-    vd g = dot3(f->l[p], f->l[r]);
-    vd d = f->n2[r] - f->n2[p];
-    vd g2 = g + g;
-    vd h2 = d * d + g2 * g2;
-    vd rh = v_rsqrt(v_max(h2, v_set(TINY)));
-    vd c2 = v_select(v_less(h2, v_set(TINY)), v_set(1.0), 0.5 * (v_abs(d) * rh) + 0.5);
-    vd rc = v_rsqrt(c2);
-    vd c = c2 * rc;
-    vd s = v_copysign(v_set(1.0), d) * (g * rh) * rc;
-    UPTO(3, i) rotate(&f->l[p][i], &f->l[r][i], c, s);
-    UPTO(3, i) rotate(&f->z[p][i], &f->z[r][i], c, s);
-    vd shift = (s * rc) * g;
-    f->n2[p] -= shift;
-    f->n2[r] += shift;
+/* The inner Jacobi rotation that makes columns p and r orthogonal, line by line over the tile.
+ * With d = |r|^2 - |p|^2, g = p.r:  1/h = (d^2/4 + g^2)^-1/2,  c^2 = 1/2 + |d| / (4 h),
+ * s = sign(d) g / (2 h c); |d| is kept off zero so that d = g = 0 gives c = 1. */
+INLINE void orthogonalise(Svd f[TILE], int p, int r) {
+    vd g[TILE], d[TILE], quarter[TILE], h2[TILE], rh[TILE], c2[TILE], rc[TILE], s[TILE], c[TILE];
+    EACH g[j] = f[j].l[p][0] * f[j].l[r][0];
+    EACH g[j] += f[j].l[p][1] * f[j].l[r][1];
+    EACH g[j] += f[j].l[p][2] * f[j].l[r][2];
+    EACH d[j] = f[j].n2[r] - f[j].n2[p];
+    EACH s[j] = v_copysign(v_set(0.5), d[j]);
+    EACH d[j] = v_maxabs(d[j], v_set(SMALL));
+    EACH quarter[j] = 0.25 * d[j];
+    EACH h2[j] = quarter[j] * d[j];
+    EACH h2[j] += g[j] * g[j];
+    rsqrt_tile(h2, rh);
+    EACH s[j] *= g[j];
+    EACH c2[j] = quarter[j] * rh[j] + 0.5;
+    EACH s[j] *= rh[j];
+    rsqrt_tile(c2, rc);
+    EACH c[j] = c2[j] * rc[j];
+    EACH s[j] *= rc[j];
+    UPTO(3, i) EACH rotate(&f[j].l[p][i], &f[j].l[r][i], c[j], s[j]);
+    EACH g[j] *= s[j] * rc[j];
+    UPTO(3, i) EACH rotate(&f[j].z[p][i], &f[j].z[r][i], c[j], s[j]);
+    EACH f[j].n2[p] -= g[j];
+    EACH f[j].n2[r] += g[j];
 }
 
 INLINE void order(Svd *f, int p, int r) {
@@ -124,10 +147,15 @@ INLINE void law_svd(const State x[TILE], const vd hdot[TILE][3], vd rate[TILE][4
     EACH UPTO(3, k) UPTO(3, i) f[j].z[k][i] = v_set(i == k);
     EACH UPTO(3, k) UPTO(k, i) f[j].l[k][i] = v_set(0.0);
     EACH UPTO(3, k) f[j].n2[k] = dot3(f[j].l[k], f[j].l[k]);
-    _Pragma("GCC unroll 8") for (int sweep = 0; sweep < SWEEPS; sweep++) {
-        EACH orthogonalise(&f[j], 0, 1);
-        EACH orthogonalise(&f[j], 0, 2);
-        EACH orthogonalise(&f[j], 1, 2);
+#ifdef ROLL
+_Pragma("GCC unroll 1")
+#else
+_Pragma("GCC unroll 8")
+#endif
+ for (int sweep = 0; sweep < SWEEPS; sweep++) {
+        orthogonalise(f, 0, 1);
+        orthogonalise(f, 0, 2);
+        orthogonalise(f, 1, 2);
     }
     EACH UPTO(3, k) f[j].n2[k] = dot3(f[j].l[k], f[j].l[k]);
     EACH order(&f[j], 0, 1);

@@ -19,15 +19,29 @@
 #define JY 20.0
 #define JZ 16.0
 
-typedef struct {
-    vd q[4], w[3], d[4]; /* the state: attitude, body rate, gimbal angles */
-    vd s[4], c[4], h[3]; /* sine, cosine and momentum at d: the end of one step serves the next */
-} State;
+#ifndef TILE
+#define TILE 1 /* vectors that advance together, to hide latency */
+#endif
+#define EACH _Pragma("GCC unroll 8") for (int j = 0; j < TILE; j++)
+#define UPTO(n, i) _Pragma("GCC unroll 8") for (int i = 0; i < n; i++)
 
 /* A symmetric 3 x 3 matrix. */
 typedef struct {
     vd xx, yy, zz, xy, xz, yz;
 } Sym3;
+
+/* What the singularity-robust laws know from the gimbal angles alone: adj(M), det(M), and for the
+ * null motion k det(M) grad and k A grad. Ready before the body's last stage, to run beside it. */
+typedef struct {
+    Sym3 adjugate;
+    vd det, null[4], drift[3];
+} Plan;
+
+typedef struct {
+    vd q[4], w[3], d[4]; /* the state: attitude, body rate, gimbal angles */
+    vd s[4], c[4], h[3]; /* sine, cosine and momentum at d: the end of one step serves the next */
+    Plan plan;
+} State;
 
 INLINE void array_momentum(const vd s[4], const vd c[4], vd h[3]) {
     h[0] = COS_B * (s[2] - s[0]) + (c[3] - c[1]);
@@ -61,42 +75,29 @@ INLINE void wanted_momentum_rate(const State *x, vd hdot[3]) {
     hdot[2] = kp * q[3] + KW * w[2] - w[0] * h[1] + w[1] * h[0];
 }
 
-/* J omega_dot = (J omega + h) x omega - A rates; q_dot = q * [0, omega] / 2, returned doubled. */
+/* k = (2 q_dot, J omega_dot): q_dot = q * [0, omega] / 2,
+ * J omega_dot = (J omega + h) x omega - A rates. advance() holds the 1/2 and the 1/J. */
 INLINE void derivative(const vd q[4], const vd w[3], const vd h[3], const vd u[3], vd k[7]) {
     vd lx = JX * w[0] + h[0], ly = JY * w[1] + h[1], lz = JZ * w[2] + h[2];
     k[0] = -(q[1] * w[0]) - q[2] * w[1] - q[3] * w[2];
     k[1] = q[0] * w[0] + q[2] * w[2] - q[3] * w[1];
     k[2] = q[0] * w[1] + q[3] * w[0] - q[1] * w[2];
     k[3] = q[0] * w[2] + q[1] * w[1] - q[2] * w[0];
-    k[4] = (1.0 / JX) * (ly * w[2] - (lz * w[1] + u[0]));
-    k[5] = (1.0 / JY) * (lz * w[0] - (lx * w[2] + u[1]));
-    k[6] = (1.0 / JZ) * (lx * w[1] - (ly * w[0] + u[2]));
+    k[4] = ly * w[2] - (lz * w[1] + u[0]);
+    k[5] = lz * w[0] - (lx * w[2] + u[1]);
+    k[6] = lx * w[1] - (ly * w[0] + u[2]);
 }
 
-/* out = x + step (k_q / 2, k_w) */
+/* out = x + step (k_q / 2, J^-1 k_w) */
 INLINE void advance(const vd x[7], const vd k[7], double step, vd out[7]) {
     for (int i = 0; i < 4; i++) out[i] = x[i] + (0.5 * step) * k[i];
-    for (int i = 4; i < 7; i++) out[i] = x[i] + step * k[i];
+    out[4] = x[4] + (step / JX) * k[4];
+    out[5] = x[5] + (step / JY) * k[5];
+    out[6] = x[6] + (step / JZ) * k[6];
 }
 
-/* q and omega over one step. The rates are held, so stages 2 and 3 share one set of gimbal angles
- * (h_mid, u_mid) and the last stage has those of the next step's start. */
-INLINE void integrate_body(State *x, const vd u[3], const vd h_mid[3], const vd u_mid[3],
-                           const vd h_end[3], const vd u_end[3]) {
-    vd y[7], z[7], k[7], sum[7];
-    for (int i = 0; i < 4; i++) y[i] = x->q[i];
-    for (int i = 0; i < 3; i++) y[4 + i] = x->w[i];
-    derivative(y, y + 4, x->h, u, k);
-    advance(y, k, DT / 6, sum);
-    advance(y, k, DT / 2, z);
-    derivative(z, z + 4, h_mid, u_mid, k);
-    advance(sum, k, DT / 3, sum);
-    advance(y, k, DT / 2, z);
-    derivative(z, z + 4, h_mid, u_mid, k);
-    advance(sum, k, DT / 3, sum);
-    advance(y, k, DT, z);
-    derivative(z, z + 4, h_end, u_end, k);
-    advance(sum, k, DT / 6, sum);
+/* The end of a step: x = sum with q / |q|. */
+INLINE void normalise(const vd sum[7], State *x) {
     vd n = v_rsqrt((sum[0] * sum[0] + sum[1] * sum[1]) + (sum[2] * sum[2] + sum[3] * sum[3]));
     for (int i = 0; i < 4; i++) x->q[i] = sum[i] * n;
     for (int i = 0; i < 3; i++) x->w[i] = sum[4 + i];
@@ -107,23 +108,6 @@ INLINE void limit_rates(const vd raw[4], vd den, vd rate[4]) {
     vd peak = v_maxabs(v_maxabs(raw[0], raw[1]), v_maxabs(raw[2], raw[3]));
     vd scale = v_reciprocal(v_max(den, peak * (1.0 / RATE_MAX)));
     for (int i = 0; i < 4; i++) rate[i] = raw[i] * scale;
-}
-
-/* Hold the rates for one step: gimbals, then the body. */
-INLINE void hold_rates(State *x, const vd rate[4]) {
-    vd s[4], c[4], u[3], h_mid[3], u_mid[3], u_end[3], h_end[3];
-    array_torque(x->s, x->c, rate, u);
-    for (int i = 0; i < 4; i++) v_sincos(x->d[i] + (DT / 2) * rate[i], &s[i], &c[i]);
-    array_momentum(s, c, h_mid);
-    array_torque(s, c, rate, u_mid);
-    for (int i = 0; i < 4; i++) {
-        x->d[i] = x->d[i] + DT * rate[i];
-        v_sincos(x->d[i], &x->s[i], &x->c[i]);
-    }
-    array_momentum(x->s, x->c, h_end);
-    array_torque(x->s, x->c, rate, u_end);
-    integrate_body(x, u, h_mid, u_mid, h_end, u_end);
-    for (int i = 0; i < 3; i++) x->h[i] = h_end[i];
 }
 
 #endif

@@ -6,21 +6,13 @@
  */
 #include "reference.h"
 
-#ifndef TILE
-#define TILE 1
-#endif
-
-#include "law_sr.h"
-#include "law_svd.h"
-
-enum { LAW_SR, LAW_GRADIENT, LAW_SVD };
+#include "step.h"
 
 INLINE void load(State *x, const double *q, const double *w, const double *d, long n) {
     UPTO(4, i) x->q[i] = v_load(q + i * n);
     UPTO(3, i) x->w[i] = v_load(w + i * n);
     UPTO(4, i) x->d[i] = v_load(d + i * n);
     UPTO(4, i) v_sincos(x->d[i], &x->s[i], &x->c[i]);
-    array_momentum(x->s, x->c, x->h);
 }
 
 INLINE void store(const State *x, double *q, double *w, double *d, long n) {
@@ -29,23 +21,11 @@ INLINE void store(const State *x, double *q, double *w, double *d, long n) {
     UPTO(4, i) v_store(d + i * n, x->d[i]);
 }
 
-INLINE void step(State x[TILE], int law) {
-    vd hdot[TILE][3], raw[TILE][4], rate[TILE][4], den[TILE];
-    EACH wanted_momentum_rate(&x[j], hdot[j]);
-    if (law == LAW_SVD) {
-        EACH den[j] = v_set(1.0);
-        law_svd(x, hdot, raw);
-    } else {
-        EACH den[j] = law_sr(&x[j], hdot[j], law == LAW_GRADIENT, raw[j]);
-    }
-    EACH limit_rates(raw[j], den[j], rate[j]);
-    EACH hold_rates(&x[j], rate[j]);
-}
-
 INLINE void run(double *q, double *w, double *d, long n, long steps, int law) {
     for (long at = 0; at < n; at += TILE * W) {
         State x[TILE];
         EACH load(&x[j], q + at + j * W, w + at + j * W, d + at + j * W, n);
+        EACH look_ahead(&x[j], law);
         for (long k = 0; k < steps; k++) step(x, law);
         EACH store(&x[j], q + at + j * W, w + at + j * W, d + at + j * W, n);
     }

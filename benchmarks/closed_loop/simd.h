@@ -30,6 +30,9 @@ INLINE vd v_max(vd a, vd b) { return _mm512_max_pd(a, b); }
 INLINE vd v_abs(vd a) { return _mm512_abs_pd(a); }
 INLINE vd v_sqrt(vd a) { return _mm512_sqrt_pd(a); }
 INLINE vd v_select(vm m, vd a, vd b) { return _mm512_mask_mov_pd(b, m, a); } /* m ? a : b */
+INLINE vd v_select_minus(vm m, vd a, vd b) { /* m ? -a : b */
+    return _mm512_mask_xor_pd(b, m, a, _mm512_set1_pd(-0.0));
+}
 INLINE vm v_less(vd a, vd b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
 /* max(|a|, |b|) in one instruction */
 INLINE vd v_maxabs(vd a, vd b) { return _mm512_range_pd(a, b, 0x0b); }
@@ -37,7 +40,6 @@ INLINE vi v_bits(vd a) { return _mm512_castpd_si512(a); }
 INLINE vd v_double(vi a) { return _mm512_castsi512_pd(a); }
 INLINE vi v_seti(int64_t x) { return _mm512_set1_epi64(x); }
 #define v_shl(a, n) _mm512_slli_epi64(a, n)
-INLINE vi v_addi(vi a, vi b) { return _mm512_add_epi64(a, b); }
 INLINE vm v_odd(vi a) { return _mm512_test_epi64_mask(a, v_seti(1)); }
 /* a ^ (b & sign bit) and (a & ~sign bit) | (b & sign bit) */
 INLINE vd v_flip(vd a, vi b) {
@@ -65,10 +67,12 @@ INLINE vi v_seti(int64_t x) { return _mm256_set1_epi64x(x); }
 INLINE vd v_abs(vd a) { return _mm256_andnot_pd(v_set(-0.0), a); }
 INLINE vd v_sqrt(vd a) { return _mm256_sqrt_pd(a); }
 INLINE vd v_select(vm m, vd a, vd b) { return _mm256_blendv_pd(b, a, m); }
+INLINE vd v_select_minus(vm m, vd a, vd b) { /* m ? -a : b */
+    return v_select(m, _mm256_xor_pd(a, v_set(-0.0)), b);
+}
 INLINE vm v_less(vd a, vd b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
 INLINE vd v_maxabs(vd a, vd b) { return v_max(v_abs(a), v_abs(b)); }
 #define v_shl(a, n) _mm256_slli_epi64(a, n)
-INLINE vi v_addi(vi a, vi b) { return _mm256_add_epi64(a, b); }
 INLINE vm v_odd(vi a) { return v_double(v_shl(a, 63)); } /* blendv reads the sign bit */
 INLINE vd v_flip(vd a, vi b) { return _mm256_xor_pd(a, _mm256_and_pd(v_double(b), v_set(-0.0))); }
 INLINE vd v_copysign(vd a, vd b) {
@@ -93,13 +97,13 @@ INLINE vd v_max(vd a, vd b) { return a > b ? a : b; }
 INLINE vd v_abs(vd a) { return __builtin_fabs(a); }
 INLINE vd v_sqrt(vd a) { return __builtin_sqrt(a); }
 INLINE vd v_select(vm m, vd a, vd b) { return m ? a : b; }
+INLINE vd v_select_minus(vm m, vd a, vd b) { return m ? -a : b; }
 INLINE vm v_less(vd a, vd b) { return a < b; }
 INLINE vd v_maxabs(vd a, vd b) { return v_max(v_abs(a), v_abs(b)); }
 INLINE vi v_bits(vd a) { vi b; memcpy(&b, &a, 8); return b; }
 INLINE vd v_double(vi a) { vd b; memcpy(&b, &a, 8); return b; }
 INLINE vi v_seti(int64_t x) { return x; }
 INLINE vi v_shl(vi a, int n) { return (vi)((uint64_t)a << n); }
-INLINE vi v_addi(vi a, vi b) { return a + b; }
 INLINE vm v_odd(vi a) { return (int)(a & 1); }
 INLINE vd v_flip(vd a, vi b) { return v_double(v_bits(a) ^ (b & INT64_MIN)); }
 INLINE vd v_copysign(vd a, vd b) { return __builtin_copysign(a, b); }

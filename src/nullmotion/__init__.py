@@ -20,7 +20,12 @@ _WHERE = {
     "NullmotionError": "nullmotion.errors",
     "InputError": "nullmotion.errors",
 }
-_MODULES = {"layouts": "nullmotion.array.layouts", "laws": "nullmotion.laws", "ops": "nullmotion.ops"}
+_MODULES = {
+    "layouts": "nullmotion.array.layouts",
+    "laws": "nullmotion.laws",
+    "ops": "nullmotion.ops",
+    "singularity": "nullmotion.singularity",
+}
 
 __all__ = ["__version__", *_WHERE, *_MODULES]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, ClassVar
@@ -9,6 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from nullmotion.array.model import CmgArray
+from nullmotion.errors import InputError
 
 
 class Claim(StrEnum):
@@ -88,9 +90,38 @@ class Law:
         """Return the law's state before its first sample."""
         return ()
 
+    def exact_above(self, array: CmgArray) -> float:
+        """Return the sigma_min(A / mean momentum) above which EXACT_TORQUE holds."""
+        return 0.0
+
     def step(self, array: CmgArray, obs: Observation, state: State) -> tuple[Any, State]:
         """Return gimbal rates [rad/s], (n,), before any rate limit, and the next state."""
         raise NotImplementedError
+
+
+def check_parameters(law: Law, positive: Sequence[str] = (), not_negative: Sequence[str] = ()) -> None:
+    """Refuse parameters that are not finite numbers of their sign; make whole numbers floats.
+
+    Args:
+        law: Law under construction.
+        positive: Fields above 0; one that is None stays None.
+        not_negative: Fields from 0 on.
+
+    Raises:
+        InputError: With the key ``law.<field>``.
+    """
+    for key in (*positive, *not_negative):
+        value = getattr(law, key)
+        if value is None:
+            continue
+        parts = value if isinstance(value, (tuple, list)) else (value,)
+        allowed = f"a finite number {'above' if key in positive else 'from'} 0"
+        for part in parts:
+            number = isinstance(part, (int, float, np.number)) and not isinstance(part, bool)
+            if not (number and np.isfinite(part) and (part > 0 or (part == 0 and key in not_negative))):
+                raise InputError(f"law.{key}", value, allowed)
+        floats = tuple(float(part) for part in parts)
+        object.__setattr__(law, key, floats if isinstance(value, (tuple, list)) else floats[0])
 
 
 def command_size(array: CmgArray, obs: Observation) -> Any:

@@ -12,6 +12,8 @@ from nullmotion import ops
 Matrix = Any
 
 _SWEEPS = {1: 0, 2: 2, 3: 4}  # one-sided Jacobi on m x m: to the last bit (design/svd_sweeps.py)
+_ROW_SWEEPS = {1: 0, 2: 2, 3: 5}  # one more: the rows of A come unprepared
+_ORTHOGONAL = 1e-28  # squared cosine of two rows below which their product is rounding
 _TINY = 1e-300
 _RANK = 4e-16  # a second singular value below this share of the first is rounding
 
@@ -110,6 +112,66 @@ def svd(a: Matrix) -> Svd:
     w, g = order[:m], order[m:]
     s = np.array([norm(w[:, j]) for j in range(m)])
     return Svd(_left_basis(w, s), s, q[:, :m] @ g, q[:, m:])
+
+
+class Rows(NamedTuple):
+    """A = U R with orthogonal U and orthogonal rows of R, the longest first.
+
+    Attributes:
+        u: Left singular vectors as columns, (m, m).
+        r: sigma_j v_j^T as rows, (m, n); a row of zeros where A loses rank.
+        squares: sigma_j^2, descending, (m,).
+    """
+
+    u: Matrix
+    r: Matrix
+    squares: Matrix
+
+    def solve(self, b: Matrix, squares: Matrix) -> Matrix:
+        """Return R^T diag(1 / squares) U^T b: a pseudo-inverse with squares in sigma^2's place."""
+        return ((self.u.T @ b) / squares) @ self.r
+
+    def project_out(self, x: Matrix, squares: Matrix) -> Matrix:
+        """Return x - R^T diag(1 / squares) R x: null motion, where squares are sigma^2."""
+        return x - ((self.r @ x) / squares) @ self.r
+
+
+def rows(a: Matrix) -> Rows:
+    """Return the singular value decomposition of A kept as orthogonal rows.
+
+    One-sided Jacobi on the rows of A. Rows that are orthogonal up to rounding are left
+    alone, so that what is zero by symmetry stays exactly zero, with and without fused
+    multiply-adds; and no singular vector is asked for that rounding alone would choose.
+    """
+    m = a.shape[0]
+    both = np.concatenate([a, np.eye(m)], axis=1)
+    parts = [both[j] for j in range(m)]
+    n = a.shape[1]
+    for _ in range(_ROW_SWEEPS[m]):
+        for p, q in combinations(range(m), 2):
+            parts[p], parts[q] = _rotated(parts[p], parts[q], n)
+    size = [x[:n] @ x[:n] for x in parts]
+    for p, q in [(0, 1), (1, 2), (0, 1)] if m == 3 else [(0, 1)] if m == 2 else []:
+        swap = ops.less(size[p], size[q])
+        parts[p], parts[q] = (
+            ops.where(swap, parts[q], parts[p]),
+            ops.where(swap, parts[p], parts[q]),
+        )
+        size[p], size[q] = ops.where(swap, size[q], size[p]), ops.where(swap, size[p], size[q])
+    stacked = np.stack(parts)
+    return Rows(stacked[:, n:].T, stacked[:, :n], np.array(size))
+
+
+def _rotated(x: Matrix, y: Matrix, n: int) -> tuple[Matrix, Matrix]:
+    """Rotate two rows so that their first n entries become orthogonal."""
+    xx, yy, xy = x[:n] @ x[:n], y[:n] @ y[:n], x[:n] @ y[:n]
+    coupling = ops.where(ops.less(_ORTHOGONAL * (xx * yy), xy * xy), 2.0 * xy, 0.0)
+    gap = yy - xx
+    t = coupling / (ops.absolute(gap) + ops.sqrt(gap * gap + coupling * coupling) + _TINY)
+    t = ops.where(ops.less(gap, 0.0), -t, t)
+    c = 1.0 / ops.sqrt(1.0 + t * t)
+    s = c * t
+    return c * x - s * y, s * x + c * y
 
 
 def _householder(a: Matrix) -> tuple[Matrix, Matrix]:

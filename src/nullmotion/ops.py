@@ -27,7 +27,7 @@ def is_symbolic(*values: Value) -> bool:
 def _elementwise(function: Callable[..., Any], *values: Value) -> Value:
     if any(np.ndim(v) for v in values):
         return np.frompyfunc(function, len(values), 1)(*values)
-    return function(*values)
+    return function(*[v[()] if isinstance(v, np.ndarray) else v for v in values])
 
 
 def where(condition: Value, a: Value, b: Value) -> Value:
@@ -108,17 +108,17 @@ def clip(x: Value, low: Value, high: Value) -> Value:
 
 def amin(x: Value) -> Value:
     """Return the least element of a one-dimensional array."""
-    result = x[..., 0]
+    result = x[..., 0][()]
     for i in range(1, x.shape[-1]):
-        result = minimum(result, x[..., i])
+        result = minimum(result, x[..., i][()])
     return result
 
 
 def amax(x: Value) -> Value:
     """Return the greatest element of a one-dimensional array."""
-    result = x[..., 0]
+    result = x[..., 0][()]
     for i in range(1, x.shape[-1]):
-        result = maximum(result, x[..., i])
+        result = maximum(result, x[..., i][()])
     return result
 
 

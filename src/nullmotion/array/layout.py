@@ -20,11 +20,13 @@ class Layout:
     Class attributes:
         name: Name in files and in ``nullmotion.layouts``.
         full_name: What it is called in the field.
+        aliases: Other names it is found under.
         citation: Where it is described.
     """
 
     name: ClassVar[str] = ""
     full_name: ClassVar[str] = ""
+    aliases: ClassVar[tuple[str, ...]] = ()
     citation: ClassVar[str] = ""
 
     def axes(self) -> tuple[Any, Any]:

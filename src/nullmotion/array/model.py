@@ -164,7 +164,7 @@ class CmgArray:
     @property
     def has_angle_limits(self) -> bool:
         """Whether any gimbal has an end stop."""
-        return bool(np.isfinite(np.asarray(self.angle_limits, float)).any())
+        return any(ops.is_symbolic(v) or np.isfinite(v) for v in np.ravel(self.angle_limits))
 
     def without(self, failed: int | Iterable[int], frozen_at: float | Iterable[float] | None = None) -> CmgArray:
         """Return the array after CMGs failed.

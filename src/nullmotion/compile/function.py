@@ -68,7 +68,7 @@ class CompiledFunction:
         """Compile ``program``; ``result`` shows the shape of what it returns."""
         self.program, self.width = program, width
         self._result = result
-        self._machine = llvm.Machine(map_source(program, width), level)
+        self._machine = llvm.machine(map_source(program, width), level)
         self._map = self._machine.function("map", *MAP_TYPES)
         self.status: np.ndarray = np.zeros(0)
 

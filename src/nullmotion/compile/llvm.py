@@ -151,6 +151,12 @@ def declarations(shape: Shape) -> list[str]:
 ATTRIBUTES = 'attributes #0 = { nounwind "prefer-vector-width"="512" "min-legal-vector-width"="512" }'
 
 
+@lru_cache(maxsize=64)
+def machine(source: str, level: int = 2) -> Machine:
+    """Return the machine code of a module; the same text is compiled once."""
+    return Machine(source, level)
+
+
 class Machine:
     """Machine code made from an IR module; keeps it alive."""
 
@@ -159,14 +165,13 @@ class Machine:
         import llvmlite.binding as llvm
 
         _initialize()
-        machine = _target_machine(level)
+        target = _target_machine(level)
         module = llvm.parse_assembly(source)
         module.triple = llvm.get_default_triple()
-        module.data_layout = str(machine.target_data)
-        self._engine = llvm.create_mcjit_compiler(module, machine)
+        module.data_layout = str(target.target_data)
+        self._engine = llvm.create_mcjit_compiler(module, target)
         self._engine.finalize_object()
-        self.module = module
-        self.machine = machine
+        self._target, self._module = target, module
 
     def function(self, name: str, *argument_types: Any) -> Any:
         """Return a compiled function, callable from Python (releases the GIL)."""
@@ -177,4 +182,4 @@ class Machine:
 
     def assembly(self) -> str:
         """Return the machine code as text."""
-        return str(self.machine.emit_assembly(self.module))
+        return str(self._target.emit_assembly(self._module))

@@ -138,8 +138,10 @@ def _mul(t: Tape, a: tuple[int, ...], c: Sequence[Any]) -> int | None:
 
 
 def _div(t: Tape, a: tuple[int, ...], c: Sequence[Any]) -> int | None:
-    if c[1] is None or c[1] == 0.0 or not math.isfinite(c[1]):
+    if c[1] is None or c[1] == 0.0:
         return None
+    if math.isinf(c[1]):
+        return t.constant(0.0)
     exact = abs(math.frexp(c[1])[0]) == 0.5 and abs(math.frexp(c[1])[1]) < 1000
     return t.record("mul", a[0], t.constant(1.0 / c[1])) if exact else None
 

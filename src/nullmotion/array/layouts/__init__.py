@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -55,4 +56,9 @@ def __getattr__(name: str) -> Callable[..., CmgArray]:
         registry.get(name)
     except UnknownNameError as error:
         raise AttributeError(str(error)) from None
-    return lambda **parameters: create(name, **parameters)
+    return partial(create, name)
+
+
+# importing a layout's file binds its module to the same name: the maker comes last and stays
+for _name in names():
+    globals()[_name] = partial(create, _name)

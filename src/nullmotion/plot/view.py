@@ -1,0 +1,105 @@
+"""A chart without a renderer: what is drawn, in which unit, over which axis.
+
+`nullmotion.report` makes these into pages, `nullmotion.plot.draw` into figures.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from nullmotion.plot import palette
+
+
+class Run(Protocol):
+    """What a picture reads of a trajectory (`nullmotion.sim.Trajectory` is one)."""
+
+    t: np.ndarray
+    delta: np.ndarray
+    rates: np.ndarray
+    hdot: np.ndarray
+    torque: np.ndarray
+    momentum: np.ndarray
+    measures: Mapping[str, np.ndarray]
+    eram: Any
+    metrics: Mapping[str, float]
+    stopped_at_s: float | None
+    stop_reason: str
+    status: Sequence[str]
+    backend: str
+    setup: Any
+
+
+class Case(Protocol):
+    """What a picture reads of one case of a comparison."""
+
+    label: str
+    law: str
+    information: Sequence[str]
+    trajectory: Any
+    metrics: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One line of a chart.
+
+    Args:
+        label: Name in the legend.
+        x: Abscissa, (k,).
+        y: Ordinate, (k,); not a number where there is a gap.
+        colour: Hex colour.
+        dash: One of `palette.DASHES`.
+        width: Line width [px].
+        marker: Whether its points are drawn as well.
+    """
+
+    label: str
+    x: np.ndarray
+    y: np.ndarray
+    colour: str
+    dash: str = "solid"
+    width: float = 1.6
+    marker: bool = False
+
+
+@dataclass(frozen=True)
+class Level:
+    """A horizontal line with a name, such as a limit."""
+
+    value: float
+    label: str
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One chart.
+
+    Args:
+        key: Short name, unique on a page.
+        title: What it shows.
+        y_title: Quantity and unit of the ordinate.
+        curves: Its lines.
+        levels: Limits and thresholds.
+        note: A sentence a reader needs beside the title.
+        x_title: Quantity and unit of the abscissa.
+    """
+
+    key: str
+    title: str
+    y_title: str
+    curves: tuple[Curve, ...]
+    levels: tuple[Level, ...] = ()
+    note: str = ""
+    x_title: str = "Time [s]"
+
+
+def bundle(x: np.ndarray, columns: np.ndarray, labels: Sequence[str]) -> tuple[Curve, ...]:
+    """Return one curve a column, each with its own colour and dash."""
+    return tuple(
+        Curve(label, x, columns[:, i], palette.colour(i), palette.dash(i))
+        for i, label in enumerate(labels)
+    )

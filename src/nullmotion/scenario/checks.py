@@ -1,0 +1,138 @@
+"""Checks of a scenario that need more than one key."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from nullmotion.array import CmgArray
+from nullmotion.errors import InputError
+from nullmotion.scenario import keys, objects, profile
+from nullmotion.scenario.problems import MISSING
+from nullmotion.scenario.scenario import Scenario
+from nullmotion.scenario.toml import Path
+from nullmotion.scenario.validate import Validator
+
+WHOLE = 1e-9  # how near to a whole multiple of dt a time must be
+MOST_STEPS = 2**31
+
+
+def check(scenario: Scenario, validator: Validator) -> None:
+    """Add to the validator what does not fit together."""
+    array = _check_array(scenario, validator)
+    if array is not None:
+        _check_start(scenario, array, validator)
+        _check_mission(scenario, array, validator)
+    _check_times(scenario, validator)
+    for path, section in [(("law",), scenario.law), *_cases(scenario)]:
+        try:
+            objects.law(section)
+        except InputError as error:
+            _add_construction(validator, path, error)
+
+
+def _cases(scenario: Scenario) -> list[tuple[Path, Any]]:
+    return [(("compare", "case", i), case) for i, case in enumerate(scenario.cases)]
+
+
+def _check_array(scenario: Scenario, v: Validator) -> CmgArray | None:
+    section = scenario.array
+    wheels = [k for k in ("wheel_inertia_kg_m2", "wheel_speed_rpm") if section.given(k)]
+    if wheels and section.given("h0_Nms"):
+        v.add(("array", "h0_Nms"), section.h0_Nms, f"either h0_Nms or wheel_inertia_kg_m2 and wheel_speed_rpm; {wheels[0]} is given too")
+    elif len(wheels) == 1:
+        other = "wheel_speed_rpm" if wheels[0] == "wheel_inertia_kg_m2" else "wheel_inertia_kg_m2"
+        v.add(("array", wheels[0]), getattr(section, wheels[0]), f"only together with {other}")
+    if section.frozen_at_deg is not None and not section.failed_cmgs:
+        v.add(("array", "frozen_at_deg"), section.frozen_at_deg, "only together with failed_cmgs")
+    if v.problems:
+        return None
+    try:
+        whole = objects.whole_array(section)
+    except InputError as error:
+        _add_construction(v, ("array",), error)
+        return None
+    except ValueError:  # lengths of wheel inertias and speeds
+        v.add(("array", "wheel_speed_rpm"), section.wheel_speed_rpm, "one number or one for each wheel")
+        return None
+    return _check_failures(scenario, whole, v)
+
+
+def _check_failures(scenario: Scenario, whole: CmgArray, v: Validator) -> CmgArray | None:
+    section = scenario.array
+    frozen = section.frozen_at_deg
+    if isinstance(frozen, tuple) and len(frozen) != len(set(section.failed_cmgs)):
+        v.add(("array", "frozen_at_deg"), frozen, f"one number or {len(section.failed_cmgs)}, one for each failed CMG")
+    elif len(set(section.failed_cmgs)) >= whole.n or any(i >= whole.n for i in section.failed_cmgs):
+        v.add(("array", "failed_cmgs"), section.failed_cmgs, f"indices from 0 to {whole.n - 1}, at least one CMG left")
+    else:
+        return objects.array(section)
+    return None
+
+
+def _check_start(scenario: Scenario, array: CmgArray, v: Validator) -> None:
+    section, angles = scenario.array, scenario.initial.gimbal_deg
+    total = array.n + len(set(section.failed_cmgs))
+    if angles is not None and len(angles) not in (array.n, total):
+        v.add(("initial", "gimbal_deg"), angles, f"{_counts(array.n, total)} numbers, one for each CMG (this has {len(angles)})")
+        return
+    start = objects.start(section, angles, array.n)
+    low, high = array.angle_limits[:, 0], array.angle_limits[:, 1]
+    if np.any((start < low - 1e-12) | (start > high + 1e-12)):
+        value = np.round(np.degrees(start), 6).tolist() if angles is None else angles
+        v.add(("initial", "gimbal_deg"), value, "angles within array.angle_limits_deg")
+
+
+def _counts(n: int, total: int) -> str:
+    return str(n) if n == total else f"{n} or {total}"
+
+
+def _check_mission(scenario: Scenario, array: CmgArray, v: Validator) -> None:
+    mission = scenario.mission
+    if (mission.hdot_Nm is None) == (mission.profile is None):
+        both = "exactly one of hdot_Nm and profile"
+        v.add(("mission",), MISSING, f"needs {both}" if mission.profile is None else f"takes {both}, not both")
+    elif mission.hdot_Nm is not None and len(mission.hdot_Nm) != array.m:
+        v.add(
+            ("mission", "hdot_Nm"),
+            mission.hdot_Nm,
+            f"{array.m} numbers, one for each torque dimension of the array (this has {len(mission.hdot_Nm)})",
+        )
+    elif mission.profile is not None:
+        try:
+            profile.load(scenario.source, mission.profile, array.m)
+        except profile.ProfileError as error:
+            v.add(("mission", "profile"), mission.profile, str(error))
+
+
+def _check_times(scenario: Scenario, v: Validator) -> None:
+    times, law = scenario.simulation, scenario.law
+    if times.dt_s > times.duration_s:
+        v.add(("simulation", "dt_s"), times.dt_s, f"at most duration_s = {times.duration_s:g}")
+    elif times.duration_s / times.dt_s > MOST_STEPS:
+        v.add(("simulation", "dt_s"), times.dt_s, f"a step of which at most {MOST_STEPS} make up duration_s = {times.duration_s:g}")
+    for key in ("period_s", "delay_s"):
+        value = getattr(law, key)
+        if value is not None and not is_multiple(value, times.dt_s, least=1 if key == "period_s" else 0):
+            v.add(("law", key), value, f"a whole multiple of simulation.dt_s = {times.dt_s:g}")
+
+
+def is_multiple(value: float, step: float, least: int = 0) -> bool:
+    """Return whether a time is a whole multiple of a step."""
+    count = value / step
+    return math.isfinite(count) and round(count) >= least and abs(count - round(count)) <= WHOLE * max(1.0, count)
+
+
+def _add_construction(v: Validator, section: Path, error: InputError) -> None:
+    """Note what a layout, array or law refused, at the key that the value came from."""
+    head, _, tail = error.key.removeprefix("array.").removeprefix("law.").partition("[")
+    table = v.source.value(section)
+    names = {"h0": "wheel_speed_rpm"} if "wheel_speed_rpm" in table else {}
+    key = names.get(head) or keys.same_quantity(head, table)
+    if key is None:
+        v.add((*section, head), error.value, error.allowed)
+        return
+    row = f" ({head}[{tail} = {error.value})" if tail else ""
+    v.add((*section, key), table[key], error.allowed + row)

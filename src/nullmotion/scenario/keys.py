@@ -1,0 +1,35 @@
+"""What to say about a key that is not known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+UNITS = {  # as written in keys: as written in messages
+    "rad_s2": "rad/s2", "deg_s2": "deg/s2", "kg_m2": "kg m2", "rad_s": "rad/s", "deg_s": "deg/s",
+    "Nms": "N m s", "Nm": "N m", "rpm": "rpm", "deg": "deg", "rad": "rad", "ms": "ms", "s": "s",
+}  # fmt: skip
+
+
+def split_unit(key: str) -> tuple[str, str]:
+    """Return a key without the unit at its end, in small letters, and the unit as messages write it."""
+    for unit, text in UNITS.items():
+        if key.lower().endswith("_" + unit.lower()):
+            return key[: -len(unit) - 1].lower(), text
+    return key.lower(), ""
+
+
+def same_quantity(key: str, known: Iterable[str]) -> str | None:
+    """Return the known key that names the same quantity in another unit, if there is one."""
+    return next((k for k in known if split_unit(k)[0] == split_unit(key)[0]), None)
+
+
+def hint(key: str, known: Iterable[str]) -> str:
+    """Return what is said about an unknown key: the right unit, near names, all names."""
+    names = sorted(known)
+    right = same_quantity(key, names)
+    if right is not None:
+        return f"unknown key; it is written {right} ({split_unit(right)[1] or 'no unit'})"
+    near = get_close_matches(key, names, n=3, cutoff=0.5)
+    start = f"unknown key; did you mean {' or '.join(near)}? " if near else "unknown key; "
+    return f"{start}allowed: {', '.join(names)}" if names else "unknown key; there are none here"

@@ -1,0 +1,97 @@
+"""A checked scenario."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import PurePath
+from typing import Any
+
+from nullmotion.scenario.problems import ScenarioError
+from nullmotion.scenario.schema import (
+    About,
+    ArraySection,
+    CaseSection,
+    InitialSection,
+    LawSection,
+    MissionSection,
+    PlantSection,
+    SimulationSection,
+    StopSection,
+)
+from nullmotion.scenario.source import Source
+from nullmotion.scenario.validate import Validator
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """The sections of a scenario file, each checked by itself and with the others.
+
+    Attributes:
+        source: Text and files that it comes from.
+        about: Title and description.
+        plant: None when the real array is as the law is told.
+        stop: Thresholds at which the run ends.
+        cases: What `compare` runs beside the law.
+    """
+
+    source: Source
+    about: About
+    array: ArraySection
+    plant: PlantSection | None
+    initial: InitialSection
+    law: LawSection
+    mission: MissionSection
+    simulation: SimulationSection
+    stop: StopSection
+    cases: tuple[CaseSection, ...]
+
+    @property
+    def name(self) -> str:
+        """Short name: that of the file without its ending."""
+        return PurePath(self.source.name).stem or "scenario"
+
+    @property
+    def title(self) -> str:
+        """Title, or the name where the file gives none."""
+        return self.about.title or self.name
+
+    def with_values(self, values: Mapping[str, Any], origin: str = "value") -> Scenario:
+        """Return the scenario with values set by dotted key, checked again."""
+        return checked(self.source.over(values, origin)) if values else self
+
+    def with_law(self, case: CaseSection) -> Scenario:
+        """Return the scenario with the law of a case; period and delay stay."""
+        own = {k: getattr(case, k) for k in case.model_fields_set if k != "label"}
+        kept = {k: getattr(self.law, k) for k in ("period_s", "delay_s") if self.law.given(k)}
+        return checked(self.source.over({"law": {**own, **kept}}, "compare.case"))
+
+
+def checked(source: Source) -> Scenario:
+    """Return the scenario of a source.
+
+    Raises:
+        ScenarioError: With everything that is wrong.
+    """
+    from nullmotion.scenario.checks import check  # it builds arrays and laws from a Scenario
+
+    validator = Validator(source)
+    found = validator.sections()
+    if validator.problems:
+        raise ScenarioError(validator.problems)
+    scenario = Scenario(
+        source,
+        found.get("scenario") or About(),
+        found["array"],
+        found.get("plant"),
+        found.get("initial") or InitialSection(),
+        found["law"],
+        found["mission"],
+        found["simulation"],
+        found["stop"],
+        tuple(found["compare"]),
+    )
+    check(scenario, validator)
+    if validator.problems:
+        raise ScenarioError(validator.problems)
+    return scenario

@@ -1,0 +1,126 @@
+"""The sections of a scenario file as pydantic models.
+
+Keys and units are those of the file. What depends on a name (the parameters of a
+layout or a law, the metrics to stop at) is added by `nullmotion.scenario.sections`.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+
+Positive = Annotated[float, Field(gt=0)]
+NotNegative = Annotated[float, Field(ge=0)]
+
+
+def _shape(value: Any) -> str:
+    if not isinstance(value, tuple):
+        return "number"
+    return "rows" if value and all(isinstance(v, tuple) for v in value) else "list"
+
+
+_by_shape = Discriminator(_shape)
+
+
+def _one_or_each(number: Any) -> Any:
+    """Return the type of one number or a list with one for each CMG."""
+    listed = Annotated[tuple[number, ...], Field(min_length=1), Tag("list")]
+    return Annotated[Annotated[number, Tag("number")] | listed, _by_shape]
+
+
+Pair = tuple[float, float]
+Vector = tuple[float, float, float]
+Limits = Annotated[Annotated[Pair, Tag("list")] | Annotated[tuple[Pair, ...], Tag("rows")], _by_shape]
+
+
+class Section(BaseModel):
+    """Base of all sections: nothing unknown, no NaN, no silent conversion."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    def given(self, key: str) -> bool:
+        """Return whether the file gives a value for a key."""
+        return key in self.model_fields_set
+
+
+class About(Section):
+    """``[scenario]``: what it is about."""
+
+    title: str = ""
+    description: str = ""
+
+
+class ArraySection(Section):
+    """``[array]``: a layout by name with its parameters, momenta, limits, failures."""
+
+    layout: str
+    h0_Nms: _one_or_each(NotNegative) = 1.0  # type: ignore[valid-type]
+    wheel_inertia_kg_m2: _one_or_each(Positive) | None = None  # type: ignore[valid-type]
+    wheel_speed_rpm: _one_or_each(NotNegative) | None = None  # type: ignore[valid-type]
+    rate_limit_deg_s: _one_or_each(Positive) | None = None  # type: ignore[valid-type]
+    rate_limit_mode: Literal["scale", "clip"] = "scale"
+    angle_limits_deg: Limits | None = None
+    failed_cmgs: tuple[Annotated[int, Field(ge=0)], ...] = ()
+    frozen_at_deg: _one_or_each(float) | None = None  # type: ignore[valid-type]
+
+
+class CustomArraySection(ArraySection):
+    """``[array]`` with ``layout = "custom"``: the axes themselves, in body frame B."""
+
+    gimbal_axes: Annotated[tuple[Vector, ...], Field(min_length=1)]
+    spin_axes: Annotated[tuple[Vector, ...], Field(min_length=1)]
+
+
+class PlantSection(Section):
+    """``[plant]``: how the real array differs from the one the law is given."""
+
+    gimbal_axis_error_deg: Annotated[float, Field(ge=0, lt=90)] = 0.0
+    h0_error: Annotated[float, Field(ge=0, lt=1)] = 0.0
+    encoder_bias_deg: NotNegative = 0.0
+    seed: Annotated[int, Field(ge=0)] = 0
+
+
+class InitialSection(Section):
+    """``[initial]``: the state at the start; the layout's home unless given."""
+
+    gimbal_deg: Annotated[tuple[float, ...], Field(min_length=1)] | None = None
+
+
+class NamedLaw(Section):
+    """A law by name; its parameters are fields of the models made from this one."""
+
+    name: str
+
+
+class LawSection(NamedLaw):
+    """``[law]``: the law that steers, and when it is called."""
+
+    period_s: Positive | None = None
+    delay_s: NotNegative = 0.0
+
+
+class CaseSection(NamedLaw):
+    """``[[compare.case]]``: a law that ``compare`` runs beside ``[law]``."""
+
+    label: str = ""
+
+
+class MissionSection(Section):
+    """``[mission]``: what is asked of the array."""
+
+    kind: Literal["momentum-rate"] = "momentum-rate"
+    hdot_Nm: Annotated[tuple[float, ...], Field(min_length=1)] | None = None
+    profile: str | None = None
+
+
+class StopSection(Section):
+    """``[simulation.stop]``: thresholds at which the run ends."""
+
+
+class SimulationSection(Section):
+    """``[simulation]``: time grid and integrator of the plant."""
+
+    dt_s: Positive = 0.01
+    duration_s: Positive
+    integrator: Literal["euler", "rk4", "semi-implicit-euler"] = "rk4"

@@ -1,0 +1,136 @@
+"""Models of the sections whose keys depend on a name in them."""
+
+from __future__ import annotations
+
+import dataclasses
+import types
+import typing
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from pydantic import Field, create_model
+
+from nullmotion import laws, metrics
+from nullmotion.array import layouts
+from nullmotion.scenario import schema
+
+CUSTOM = "custom"
+SECTIONS = ("scenario", "array", "plant", "initial", "law", "mission", "simulation", "compare")
+
+
+def layout_names() -> list[str]:
+    """Return what ``array.layout`` may be."""
+    return [*layouts.names(), CUSTOM]
+
+
+def array_model(layout: str) -> type[schema.ArraySection]:
+    """Return the model of ``[array]`` for a layout."""
+    if layout == CUSTOM:
+        return schema.CustomArraySection
+    return _extended(schema.ArraySection, layouts.get(layout))
+
+
+def law_model(name: str) -> type[schema.LawSection]:
+    """Return the model of ``[law]`` for a law."""
+    return _extended(schema.LawSection, laws.get(name))
+
+
+def case_model(name: str) -> type[schema.CaseSection]:
+    """Return the model of ``[[compare.case]]`` for a law."""
+    return _extended(schema.CaseSection, laws.get(name))
+
+
+def stop_model() -> type[schema.StopSection]:
+    """Return the model of ``[simulation.stop]``: a threshold for each metric of a state."""
+    known = [name for name in metrics.names() if not metrics.get(name).needs_rates]
+    keys = [f"{name}_{side}" for name in known for side in ("below", "above")]
+    fields: Any = {key: (float | None, None) for key in keys}
+    return create_model("Stop", __base__=schema.StopSection, **fields)
+
+
+def file_key(field: dataclasses.Field[Any]) -> str:
+    """Return the key of a parameter in files: an angle carries its unit."""
+    return field.name + ("_deg" if field.metadata.get("unit") == "deg" else "")
+
+
+def parameters(section: schema.Section, cls: type[Any]) -> dict[str, Any]:
+    """Return the values that a file gives for the fields of a layout or law, in SI and rad."""
+    return {
+        f.name: _from_file(f, getattr(section, file_key(f)))
+        for f in dataclasses.fields(cls)
+        if section.given(file_key(f))
+    }
+
+
+def _from_file(field: dataclasses.Field[Any], value: Any) -> Any:
+    if field.metadata.get("unit") != "deg" or value is None:
+        return value
+    turned = np.radians(value)
+    return float(turned) if np.ndim(turned) == 0 else tuple(turned.tolist())
+
+
+@lru_cache(maxsize=None)
+def _extended(base: type[Any], cls: type[Any]) -> type[Any]:
+    """Return a section with the fields of a dataclass as further keys."""
+    hints = typing.get_type_hints(cls, include_extras=True)
+    fields: dict[str, Any] = {}
+    for f in dataclasses.fields(cls):
+        if f.init:
+            required = f.default is dataclasses.MISSING and f.default_factory is dataclasses.MISSING
+            fields[file_key(f)] = (_file_type(hints[f.name]), Field(... if required else None))
+    return create_model(f"{base.__name__}_{cls.__name__}", __base__=base, **fields)
+
+
+def _file_type(hint: Any) -> Any:
+    """Return the type of a value in a file: lists are tuples, unknown types are not checked."""
+    origin = typing.get_origin(hint)
+    if hint in (float, int, bool, str) or hint is type(None) or origin is typing.Literal:
+        return hint
+    if origin is tuple:
+        return tuple[tuple(a if a is ... else _file_type(a) for a in typing.get_args(hint))]  # type: ignore[misc]
+    if origin in (typing.Union, types.UnionType):
+        return typing.Union[tuple(_file_type(a) for a in typing.get_args(hint))]  # noqa: UP007
+    return Any
+
+
+def section_keys(data: Mapping[str, Any], path: tuple[str | int, ...]) -> list[str]:
+    """Return the keys that are known in a section, given what the file names there."""
+    model = model_at(data, path)
+    if model is None:
+        return {(): list(SECTIONS), ("compare",): ["case"]}.get(path, [])
+    extra = ["stop"] if path == ("simulation",) else []
+    return [*model.model_fields, *extra]
+
+
+def model_at(data: Mapping[str, Any], path: tuple[str | int, ...]) -> type[schema.Section] | None:
+    """Return the model of the section at a path; None where there is none.
+
+    Raises:
+        UnknownNameError: If the section names a layout or law that does not exist.
+    """
+    found: Any = data
+    for part in path:
+        found = found[part]
+    match path:
+        case ("array",):
+            return array_model(str(found["layout"])) if "layout" in found else schema.ArraySection
+        case ("law",):
+            return law_model(str(found.get("name", ""))) if "name" in found else schema.LawSection
+        case ("compare", "case", int()):
+            return case_model(str(found.get("name", ""))) if "name" in found else schema.CaseSection
+        case ("simulation", "stop"):
+            return stop_model()
+        case (str(name),):
+            return _PLAIN.get(name)
+    return None
+
+
+_PLAIN: dict[str, type[schema.Section]] = {
+    "scenario": schema.About,
+    "plant": schema.PlantSection,
+    "initial": schema.InitialSection,
+    "mission": schema.MissionSection,
+    "simulation": schema.SimulationSection,
+}

@@ -1,0 +1,248 @@
+"""Run many setups at once, one run a vector lane, blocks of runs over threads."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from nullmotion import tree
+from nullmotion.compile import llvm
+from nullmotion.compile.loop import LoopKernel
+from nullmotion.errors import InputError
+from nullmotion.sim.run import Progress, Record, _columns, check_history, run, schedule, totals
+from nullmotion.sim.setup import Setup
+from nullmotion.sim.stages import Outcome, loop, parameters
+
+_WORK = 2_000_000  # run-steps in one call: about a tenth of a second, then a look at Ctrl-C
+
+
+@dataclass(frozen=True)
+class BatchResult:
+    """Metrics of many runs.
+
+    Attributes:
+        metrics: Name to values, each (runs,).
+        stopped_at_s: When each run stopped [s]; NaN if it lasted its full time.
+        stop_reason: In words, for each run.
+        final_gimbal_rad: Final gimbal angles, (runs, n).
+        final_momentum: Final momentum of the true array [N m s], (runs, m).
+        status: Flag to a boolean for each run.
+        history: Decimated histories on request, each (runs, samples, ...).
+        backend: ``kernel`` or ``python``.
+        instruction_set: Vector instructions of the kernel.
+    """
+
+    metrics: dict[str, np.ndarray]
+    stopped_at_s: np.ndarray
+    stop_reason: list[str]
+    final_gimbal_rad: np.ndarray
+    final_momentum: np.ndarray
+    status: dict[str, np.ndarray]
+    history: Record | None = None
+    backend: str = "kernel"
+    instruction_set: str = ""
+
+    def __len__(self) -> int:
+        """Return the number of runs."""
+        return len(self.stopped_at_s)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Return a metric's values by name."""
+        return self.metrics[name]
+
+
+def run_batch(
+    base: Setup,
+    *,
+    delta: np.ndarray | None = None,
+    hdot: np.ndarray | None = None,
+    setups: Sequence[Setup] | None = None,
+    threads: int | None = None,
+    history: int = 0,
+    progress: Progress | None = None,
+) -> BatchResult:
+    """Run many setups that share their structure.
+
+    Args:
+        base: What is common.
+        delta: Start angles of each run [rad], (runs, n); all as in ``base`` if None.
+        hdot: Constant command of each run [N m], (runs, m); all as in ``base`` if None.
+        setups: One setup for each run (other values may differ too); ``delta`` and ``hdot``
+            then still override.
+        threads: Threads; as many as the machine has cores by default.
+        history: Keep every so many steps of every run (0: none).
+        progress: Called with the finished share.
+
+    Raises:
+        InputError: When lengths disagree or the setups differ in more than numbers.
+        TraceError: When the law cannot be traced: run such laws one by one.
+        MemoryLimitError: When the histories would not fit.
+    """
+    values, varying = _values(base, delta, hdot, setups)
+    runs = values.shape[1]
+    if history:
+        check_history(base, runs, history)
+    kernel = LoopKernel(loop(base, varying), recording=bool(history))
+    job = _Job(kernel, base, values, history)
+    _spread(job, runs, threads or os.cpu_count() or 1, progress)
+    return job.result(runs)
+
+
+def _values(
+    base: Setup, delta: np.ndarray | None, hdot: np.ndarray | None, setups: Sequence[Setup] | None
+) -> tuple[np.ndarray, tuple[bool, ...]]:
+    """Return the values of the varying leaves, (leaves, runs), and which leaves vary."""
+    own = parameters(base)
+    leaves = np.array(tree.flatten(own), float)
+    columns: dict[int, np.ndarray] = {}
+    runs = {len(x) for x in (delta, hdot, setups) if x is not None}
+    if len(runs) > 1 or not runs or 0 in runs:
+        raise InputError("runs", sorted(runs), "the same number of runs (at least one) in every value")
+    count = runs.pop()
+    if setups is not None:
+        columns.update(_differing(base, setups))
+    at = {name: len(tree.flatten(own[: own._fields.index(name)])) for name in ("delta", "hdot")}
+    for name, given, width in (("delta", delta, base.array.n), ("hdot", hdot, base.array.m)):
+        if given is None:
+            continue
+        table = np.asarray(given, float)
+        if table.shape != (count, width) or not np.isfinite(table).all():
+            raise InputError(name, table.shape, f"{count} x {width} finite numbers")
+        if name == "hdot" and base.scheduled:
+            raise InputError("hdot", table.shape, "no constant commands: this setup has a schedule")
+        columns.update({at[name] + j: table[:, j] for j in range(width)})
+    varying = tuple(i in columns for i in range(len(leaves)))
+    return np.array([np.broadcast_to(columns[i], (count,)) for i in sorted(columns)]).reshape(-1, count), varying
+
+
+def _differing(base: Setup, setups: Sequence[Setup]) -> dict[int, np.ndarray]:
+    like = structure(base)
+    rows = []
+    for i, setup in enumerate(setups):
+        if structure(setup) != like:
+            raise InputError(f"setups[{i}]", setup.law.name, "the same structure as the first (numbers may differ)")
+        rows.append(tree.flatten(parameters(setup)))
+    table = np.array(rows, float)
+    return {i: table[:, i] for i in range(table.shape[1]) if not (table[:, i] == table[0, i]).all()}
+
+
+def structure(setup: Setup) -> Any:
+    """Return what two setups must share to run in one kernel."""
+    rest = (setup.steps, setup.period_steps, setup.delay_steps, setup.integrator, setup.metrics, setup.hdot.shape)
+    table = setup.hdot.tobytes() if setup.scheduled else b""
+    stops = tuple((s.metric, s.below) for s in setup.stop)
+    return (tree.structure(parameters(setup)), rest, table, stops)
+
+
+class _Job:
+    """The work of a batch: its memory, and what one block of runs does."""
+
+    def __init__(self, kernel: LoopKernel, base: Setup, values: np.ndarray, history: int) -> None:
+        self.kernel, self.base, self.every = kernel, base, history or 1
+        runs = values.shape[1]
+        self.padded = -(-runs // kernel.width) * kernel.width
+        self.values = np.empty((len(values), self.padded))
+        self.values[:, :runs] = values
+        self.values[:, runs:] = values[:, -1:]
+        self.out = np.zeros((kernel.outputs + len(kernel.flags), self.padded))
+        self.rows = schedule(base)
+        samples = base.steps // self.every + 1
+        self.history = np.empty((runs, samples, kernel.records)) if history else None
+        self.stopped = threading.Event()
+
+    def block(self, start: int, lanes: int) -> int:
+        """Run ``lanes`` runs from column ``start``; return how many."""
+        kernel, total = self.kernel, self.base.steps + 1
+        state = np.zeros((kernel.carried, lanes))
+        shape = (self.base.steps // self.every + 1, kernel.records, lanes) if self.history is not None else (1,)
+        history = np.empty(shape)
+        stride = max(1, _WORK // lanes)
+        for k0 in range(0, total, stride):
+            if self.stopped.is_set():
+                return 0
+            k1 = min(k0 + stride, total)
+            kernel.run(state, self.values, self.rows, history, self.out, start, lanes, k0, k1, k1 == total, self.every)
+        if self.history is not None:
+            runs = min(lanes, len(self.history) - start)
+            self.history[start : start + runs] = history[:, :, :runs].transpose(2, 0, 1)
+        return lanes
+
+    def result(self, runs: int) -> BatchResult:
+        """Gather what the blocks wrote."""
+        kernel, base = self.kernel, self.base
+        rows = list(self.out[: kernel.outputs, :runs])
+        outcome: Outcome = _gather(kernel.traced.output_like, rows)
+        flags = self.out[kernel.outputs :, :runs].astype(bool)
+        status = dict(zip(kernel.flags, flags, strict=True))
+        status["non-finite"] = ~(np.isfinite(outcome.delta).all(axis=1) & np.isfinite(outcome.rates).all(axis=1))
+        code = outcome.stop.astype(int)
+        reasons = ["end of run", *[s.reason for s in base.stop]]
+        history = None
+        if self.history is not None:
+            flat = self.history.reshape(-1, kernel.records)
+            columns = _columns(kernel.traced.record_like, flat)
+            history = Record(*[c.reshape(runs, -1, c.shape[1]) for c in columns])
+        return BatchResult(
+            totals(base, outcome.sums, outcome.taken),
+            np.where(code > 0, outcome.taken * base.dt, np.nan),
+            [reasons[max(c, 0)] for c in code],
+            outcome.delta,
+            outcome.momentum,
+            status,
+            history,
+            "kernel",
+            llvm.host().instruction_set,
+        )
+
+
+def _gather(like: Any, rows: list[np.ndarray]) -> Any:
+    """Return a record like ``like`` whose leaves are arrays over runs, runs first."""
+    source = iter(rows)
+
+    def build(item: Any) -> Any:
+        if isinstance(item, tuple):
+            parts = [build(child) for child in item]
+            return type(item)(*parts) if hasattr(item, "_fields") else tuple(parts)
+        if isinstance(item, np.ndarray):
+            return np.stack([next(source) for _ in range(item.size)], axis=-1)
+        return next(source)
+
+    return build(like)
+
+
+def _spread(job: _Job, runs: int, threads: int, progress: Progress | None) -> None:
+    """Run all blocks on threads; stop between slices on Ctrl-C."""
+    width = job.kernel.width
+    share = -(-job.padded // (4 * threads) // width) * width
+    lanes = max(width, min(64 * width, share))
+    blocks = [(start, min(lanes, job.padded - start)) for start in range(0, job.padded, lanes)]
+    done = 0
+    with ThreadPoolExecutor(threads) as pool:
+        pending: set[Future[int]] = {pool.submit(job.block, *b) for b in blocks}
+        try:
+            while pending:
+                finished, pending = wait(pending, timeout=0.1, return_when=FIRST_COMPLETED)
+                done += sum(f.result() for f in finished)
+                if progress and finished:
+                    progress(done / job.padded)
+        except BaseException:
+            job.stopped.set()
+            for future in pending:
+                future.cancel()
+            raise
+
+
+def run_each(setups: Sequence[Setup], progress: Progress | None = None, **options: Any) -> list[Any]:
+    """Run setups one after another (host laws, different structures); return trajectories."""
+    results = []
+    for i, setup in enumerate(setups):
+        results.append(run(setup, **options))
+        if progress:
+            progress((i + 1) / len(setups))
+    return results

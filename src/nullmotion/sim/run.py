@@ -1,0 +1,162 @@
+"""Run one setup: compiled when its law can be traced, in plain Python otherwise."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from typing import Any, Literal
+
+import numpy as np
+
+from nullmotion import tree
+from nullmotion.compile import llvm
+from nullmotion.compile.loop import Loop, LoopKernel, run_on_host
+from nullmotion.errors import InputError, MemoryLimitError, TraceError
+from nullmotion.sim.setup import Setup
+from nullmotion.sim.stages import Outcome, Record, loop, reductions
+from nullmotion.sim.trajectory import Trajectory
+
+Backend = Literal["auto", "kernel", "python"]
+Progress = Callable[[float], None]
+
+_SLICE = 200_000  # steps between two looks at progress and Ctrl-C
+
+
+def run(setup: Setup, *, backend: Backend = "auto", decimate: int = 1, progress: Progress | None = None) -> Trajectory:
+    """Return the trajectory of a setup.
+
+    Args:
+        setup: What to run.
+        backend: ``kernel`` compiles it, ``python`` evaluates it as it stands, ``auto``
+            compiles and falls back to Python (with a warning) on a law that cannot be traced.
+        decimate: Keep every so many steps in the history.
+        progress: Called with the finished share.
+
+    Raises:
+        TraceError: With ``kernel``, when the law decides by a value.
+        MemoryLimitError: When the history would not fit.
+    """
+    if backend not in ("auto", "kernel", "python"):
+        raise InputError("backend", backend, "'auto', 'kernel' or 'python'")
+    if decimate < 1:
+        raise InputError("decimate", decimate, "a whole number from 1")
+    check_history(setup, 1, decimate)
+    what = loop(setup)
+    if backend == "kernel" or (backend == "auto" and setup.law.traceable):
+        try:
+            return _run_kernel(setup, what, decimate, progress)
+        except TraceError as error:
+            if backend == "kernel":
+                raise
+            warnings.warn(f"{setup.law.name}: runs uncompiled, slower: {error}", RuntimeWarning, stacklevel=2)
+    return _run_python(setup, what, decimate, progress)
+
+
+def schedule(setup: Setup) -> np.ndarray:
+    """Return the command for every sample of the law, the last row held on."""
+    if not setup.scheduled:
+        return np.zeros((1, 0))
+    samples = setup.steps // setup.period_steps + 1
+    rows = np.minimum(np.arange(samples), len(setup.hdot) - 1)
+    return np.ascontiguousarray(setup.hdot[rows])
+
+
+def check_history(setup: Setup, runs: int, decimate: int) -> None:
+    """Refuse a history that would take more than half of the memory."""
+    import os
+
+    values = 3 * setup.array.n + 3 * setup.array.m
+    need = 8 * runs * (setup.steps // decimate + 1) * values
+    have = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") if hasattr(os, "sysconf") else 8 << 30
+    if need > have // 2:
+        raise MemoryLimitError(
+            f"the history of {runs} runs x {setup.steps} steps takes {need / 2**30:.1f} GiB, over half of this "
+            f"machine's memory ({have / 2**30:.1f} GiB): keep fewer steps (decimate) or fewer runs"
+        )
+
+
+def _run_kernel(setup: Setup, what: Loop, decimate: int, progress: Progress | None) -> Trajectory:
+    kernel = LoopKernel(what, recording=True, width=1)
+    total = setup.steps + 1
+    state = np.zeros((kernel.carried, 1))
+    out = np.zeros((kernel.outputs + len(kernel.flags), 1))
+    history = np.empty((setup.steps // decimate + 1, kernel.records, 1))
+    rows, none = schedule(setup), np.zeros((0, 1))
+    for k0 in range(0, total, _SLICE):
+        k1 = min(k0 + _SLICE, total)
+        kernel.run(state, none, rows, history, out, 0, 1, k0, k1, k1 == total, decimate)
+        if progress:
+            progress(k1 / total)
+    outcome: Outcome = tree.unflatten(kernel.traced.output_like, out[: kernel.outputs, 0].tolist())
+    flags = [f for f, raised in zip(kernel.flags, out[kernel.outputs :, 0], strict=True) if raised]
+    columns = _columns(kernel.traced.record_like, history[:, :, 0])
+    return assemble(setup, outcome, columns, flags, decimate, "kernel", llvm.host().instruction_set)
+
+
+def _run_python(setup: Setup, what: Loop, decimate: int, progress: Progress | None) -> Trajectory:
+    total = setup.steps + 1
+    step = (lambda k: progress((k + 1) / total) if k % 100 == 0 else None) if progress else None
+    with np.errstate(all="ignore"):
+        outcome, history = run_on_host(what, total, schedule(setup), step, recording=True)
+    kept = history[::decimate]
+    columns = Record(*[np.array([np.asarray(r[i], float) for r in kept]) for i in range(len(Record._fields))])
+    return assemble(setup, outcome, columns, [], decimate, "python", "")
+
+
+def _columns(like: Any, table: np.ndarray) -> Record:
+    parts, at = [], 0
+    for item in like:
+        size = len(tree.flatten(item))
+        parts.append(table[:, at : at + size])
+        at += size
+    return Record(*parts)
+
+
+def assemble(
+    setup: Setup, outcome: Outcome, columns: Record, flags: list[str], decimate: int, backend: str, instructions: str
+) -> Trajectory:
+    """Return the trajectory of a run's record and outcome."""
+    taken = int(outcome.taken)
+    kept = taken // decimate + 1
+    cut = Record(*[np.array(c[:kept]) for c in columns])
+    if taken % decimate == 0:
+        cut.rates[-1], cut.asked[-1] = np.nan, np.nan
+    code = int(outcome.stop)
+    stopped = code > 0
+    return Trajectory(
+        setup=setup,
+        t=np.arange(kept) * (setup.dt * decimate),
+        delta=cut.delta,
+        rates=cut.rates,
+        rates_asked=cut.asked,
+        hdot=cut.hdot,
+        momentum_wanted=cut.wanted,
+        impulse=cut.impulse,
+        metrics=totals(setup, outcome.sums, taken),
+        stopped_at_s=taken * setup.dt if stopped else None,
+        stop_reason=setup.stop[code - 1].reason if stopped else "end of run",
+        status=status(setup, outcome, flags),
+        backend=backend,
+        instruction_set=instructions,
+    )
+
+
+def totals(setup: Setup, sums: Any, taken: Any) -> dict[str, Any]:
+    """Return the metrics by name from a run's sums (floats or arrays over runs)."""
+    result = {}
+    steps = np.maximum(taken, 1)
+    for (metric, reduction), value in zip(reductions(setup.metrics), sums, strict=True):
+        if reduction == "rms":
+            value = np.sqrt(value / steps)
+        elif reduction == "mean":
+            value = value / steps
+        result[f"{reduction}_{metric.name}"] = np.where(np.isinf(value), np.nan, value)[()]
+    return result
+
+
+def status(setup: Setup, outcome: Outcome, flags: list[str]) -> list[str]:
+    """Return the status flags of a finished run."""
+    found = list(flags)
+    if not (np.isfinite(outcome.delta).all() and np.isfinite(outcome.rates).all()):
+        found.append("non-finite")
+    return found

@@ -1,0 +1,113 @@
+"""Everything that defines a run, in SI and radians."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from nullmotion.array.model import CmgArray
+from nullmotion.errors import InputError, UnsupportedArrayError
+from nullmotion.law import Law
+from nullmotion.metrics.base import Metric
+
+Integrator = Literal["euler", "rk4", "semi-implicit-euler"]
+
+
+@dataclass(frozen=True)
+class Stop:
+    """Stop a run when a metric passes a threshold, tested before each step."""
+
+    metric: Metric
+    threshold: float
+    below: bool = True
+
+    @property
+    def reason(self) -> str:
+        """The condition in words."""
+        side = "below" if self.below else "above"
+        return f"{self.metric.name} {side} {self.threshold:g}"
+
+
+@dataclass(frozen=True)
+class Setup:
+    """One momentum-rate run.
+
+    Args:
+        array: The array that the law is given.
+        law: The steering law.
+        delta: True gimbal angles at the start [rad], (n,).
+        hdot: Commanded rate of momentum [N m]: constant (m,), or a schedule with one row
+            for each law period (rows, m), whose last row holds on.
+        plant: The array that really turns; None if it is ``array``.
+        encoder_bias: What the law's measured angles are off by [rad], (n,).
+        dt: Integration step [s].
+        steps: Number of steps.
+        period_steps: Steps between two samples of the law.
+        delay_steps: Steps between a sample and the rates that come of it.
+        integrator: ``euler``, ``rk4`` or ``semi-implicit-euler``; serves the plant.
+        stop: Conditions that end the run early.
+        metrics: What is measured on the way.
+
+    Raises:
+        UnsupportedArrayError: When the law cannot steer the array.
+        InputError: For lengths that do not fit and numbers that cannot be.
+    """
+
+    array: CmgArray
+    law: Law
+    delta: np.ndarray
+    hdot: np.ndarray
+    plant: CmgArray | None = None
+    encoder_bias: np.ndarray | None = None
+    dt: float = 0.01
+    steps: int = 1000
+    period_steps: int = 1
+    delay_steps: int = 0
+    integrator: Integrator = "rk4"
+    stop: tuple[Stop, ...] = ()
+    metrics: tuple[Metric, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        """Check lengths and signs."""
+        reason = self.law.supports(self.array)
+        if reason:
+            raise UnsupportedArrayError(self.law.name, reason)
+        put = object.__setattr__
+        put(self, "delta", _finite("delta", self.delta, (self.array.n,)))
+        hdot = np.asarray(self.hdot, float)
+        shape = (self.array.m,) if hdot.ndim == 1 else (len(hdot), self.array.m)
+        put(self, "hdot", _finite("hdot", hdot, shape))
+        if self.encoder_bias is not None:
+            put(self, "encoder_bias", _finite("encoder_bias", self.encoder_bias, (self.array.n,)))
+        put(self, "dt", float(self.dt))
+        if not (np.isfinite(self.dt) and self.dt > 0):
+            raise InputError("dt", self.dt, "above 0 s")
+        for key, least in (("steps", 1), ("period_steps", 1), ("delay_steps", 0)):
+            if int(getattr(self, key)) < least:
+                raise InputError(key, getattr(self, key), f"a whole number from {least}")
+
+    @property
+    def true_array(self) -> CmgArray:
+        """The array that really turns."""
+        return self.array if self.plant is None else self.plant
+
+    @property
+    def scheduled(self) -> bool:
+        """Whether the command changes over time."""
+        return self.hdot.ndim == 2
+
+    @property
+    def period(self) -> float:
+        """Time between two samples of the law [s]."""
+        return self.dt * self.period_steps
+
+
+def _finite(key: str, value: object, shape: tuple[int, ...]) -> np.ndarray:
+    array = np.asarray(value, float)
+    if array.shape != shape:
+        raise InputError(key, array.tolist(), f"{' x '.join(map(str, shape))} numbers")
+    if not np.isfinite(array).all():
+        raise InputError(key, array.tolist(), "finite numbers")
+    return array

@@ -1,0 +1,112 @@
+"""The history of one run and what is derived from it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from nullmotion.sim.setup import Setup
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """One run. Rows are the states at t_0 ... t_N; rates act from their row on.
+
+    Attributes:
+        setup: What was run.
+        t: Times [s], (N+1,).
+        delta: True gimbal angles [rad], (N+1, n).
+        rates: Applied gimbal rates [rad/s], (N+1, n); NaN in the last row.
+        rates_asked: What the law asked before the rate limit [rad/s], (N+1, n).
+        hdot: Commanded rate of momentum [N m], (N+1, m).
+        momentum_wanted: h(0) + integral of hdot [N m s], (N+1, m).
+        impulse: Integral of the achieved torque [N m s], (N+1, m).
+        metrics: Sums over the run, such as ``min_sigma_min``.
+        stopped_at_s: When a stop condition ended the run; None if none did.
+        stop_reason: The condition, or ``end of run``.
+        status: Flags that the run raised; empty if all is well.
+        backend: ``kernel`` or ``python``.
+        instruction_set: Vector instructions of the kernel.
+    """
+
+    setup: Setup
+    t: np.ndarray
+    delta: np.ndarray
+    rates: np.ndarray
+    rates_asked: np.ndarray
+    hdot: np.ndarray
+    momentum_wanted: np.ndarray
+    impulse: np.ndarray
+    metrics: Mapping[str, float]
+    stopped_at_s: float | None
+    stop_reason: str
+    status: list[str] = field(default_factory=list)
+    backend: str = "kernel"
+    instruction_set: str = ""
+
+    @cached_property
+    def momentum(self) -> np.ndarray:
+        """Momentum of the true array [N m s], (N+1, m)."""
+        return self.setup.true_array.momentum(self.delta)
+
+    @cached_property
+    def torque(self) -> np.ndarray:
+        """Achieved rate of momentum A delta_dot [N m], (N+1, m); the vehicle gets its negative."""
+        return np.einsum("kmn,kn->km", self._jacobians, self.rates)
+
+    @cached_property
+    def _jacobians(self) -> np.ndarray:
+        return np.asarray(self.setup.true_array.jacobian(self.delta))
+
+    @cached_property
+    def measures(self) -> dict[str, np.ndarray]:
+        """Singularity measures and momentum state along the run, each (N+1,)."""
+        from nullmotion.array import momentum_state
+
+        array = self.setup.true_array
+        s = np.linalg.svd(self._jacobians / array.mean_momentum, compute_uv=False)
+        s = np.pad(s, ((0, 0), (0, array.m - s.shape[1])))
+        eram = self.eram
+        return {
+            "sigma_min": s[:, -1],
+            "sqrt_det_AAT": np.prod(s, axis=1),
+            "condition_number": s[:, 0] / np.maximum(s[:, -1], 1e-16),
+            "residual_momentum": eram.sum(axis=1),
+            "momentum_state": np.array(
+                [momentum_state.sse(array, d, h, g) for d, h, g in zip(self.delta, self.hdot, s[:, -1], strict=True)]
+            ),
+        }
+
+    @cached_property
+    def eram(self) -> np.ndarray:
+        """Effective residual angular momentum of each CMG (Mao 2019, Eq 28), (N+1, n)."""
+        from nullmotion.array import momentum_state
+
+        array = self.setup.true_array
+        return np.array([momentum_state.eram(array, d, h) for d, h in zip(self.delta, self.hdot, strict=True)])
+
+    def summary(self) -> dict[str, Any]:
+        """Return the numbers of the run, as ``summary.json`` holds them."""
+        return {
+            "law": self.setup.law.name,
+            "stopped_at_s": self.stopped_at_s,
+            "stop_reason": self.stop_reason,
+            "duration_s": float(self.t[-1]),
+            "steps": len(self.t) - 1,
+            "final_momentum": self.momentum[-1].tolist(),
+            "final_gimbal_deg": np.degrees(self.delta[-1]).tolist(),
+            **{key: float(value) for key, value in self.metrics.items()},
+            "status": list(self.status) or ["ok"],
+            "backend": self.backend,
+            "instruction_set": self.instruction_set,
+        }
+
+    def to_xarray(self) -> Any:
+        """Return the run as an `xarray.Dataset` with units and conventions."""
+        from nullmotion.scenario import store
+
+        return store.to_xarray(self)
