@@ -153,8 +153,8 @@ def measure(count: int) -> None:
         values = compiled(*np.array(points).T)
         exact = (getattr(mp, name)(*p) for p in points)
         errors = [ulps(e, v) for e, v in zip(exact, values.tolist(), strict=True)]
-        worst = max(zip(errors, points, strict=True))
-        print(f"{name:6s} {compiled.program.operations} operations, worst {worst[0]:.3f} ulp at {worst[1]}")
+        worst, where = max(zip(errors, points, strict=True))
+        print(f"{name:6s} {compiled.program.operations} operations, {worst:.3f} ulp at {where}")
     both = compile_function(lambda x: (elementary.sin(x), elementary.cos(x)), 1.0)
     print(f"sin and cos together {both.program.operations} operations")
 

@@ -2,7 +2,8 @@
  *
  *   rates = V diag(1/s1, 1/s2, s3 / (s3^2 + alpha)) U^T hdot,  alpha = 0.01 exp(-10 s3^2)
  * Householder QR of A^T = Q R, one-sided Jacobi on L = R^T (L Z = U S, four fixed sweeps), sorted,
- * V = Q Z. TILE vectors advance together, since one rotation waits for the one before it.
+ * V = Q Z. One rotation waits for the one before it, so TILE vectors advance together, line by
+ * line: EACH is the loop over them.
  */
 #ifndef LAW_SVD_H
 #define LAW_SVD_H
@@ -10,52 +11,16 @@
 #include "model.h"
 
 #define SWEEPS 4
-#define TINY 1e-290
+#define TINY 1e-280
 #define SMALL 1e-140
 
-/* Householder reflector H = I - tau v v^T with H x = -sign(x0) |x| e0; v overwrites x. */
-INLINE vd reflector(int n, vd *v, vd *tau) {
-    vd n2 = v[0] * v[0];
-    for (int i = 1; i < n; i++) n2 += v[i] * v[i];
-    n2 = v_max(n2, v_set(TINY));
-    vd norm = n2 * v_rsqrt(n2);
-    *tau = v_reciprocal(n2 + v_abs(v[0]) * norm);
-    vd signed_norm = v_copysign(norm, v[0]);
-    v[0] += signed_norm;
-    return -signed_norm;
-}
-
-INLINE void reflect(int n, const vd *v, vd tau, vd *x) {
-    vd p = v[0] * x[0];
-    for (int i = 1; i < n; i++) p += v[i] * x[i];
-    p *= tau;
-    for (int i = 0; i < n; i++) x[i] -= p * v[i];
-}
-
-/* A^T = Q R: reflectors in v[k][k..3], tau[k]; l[k] is column k of L = R^T. */
+/* A^T = Q R with reflectors I - tau[k] v[k] v[k]^T; L = R^T and Z by columns, n2 = |column of L|^2 */
 typedef struct {
     vd v[3][4], tau[3];
-    vd l[3][3], z[3][3], n2[3]; /* columns of L and Z, squared norms of L's columns */
+    vd l[3][3], z[3][3], n2[3];
 } Svd;
 
-INLINE void factor(const State *x, Svd *f) {
-    const vd *s = x->s, *c = x->c;
-    vd m[3][4] = {{-COS_B * c[0], s[1], COS_B * c[2], -s[3]},
-                  {-s[0], -COS_B * c[1], s[2], COS_B * c[3]},
-                  {SIN_B * c[0], SIN_B * c[1], SIN_B * c[2], SIN_B * c[3]}};
-    for (int k = 0; k < 3; k++) {
-        f->l[k][k] = reflector(4 - k, &m[k][k], &f->tau[k]);
-        for (int i = k; i < 4; i++) f->v[k][i] = m[k][i];
-        for (int i = k + 1; i < 3; i++) {
-            reflect(4 - k, &f->v[k][k], f->tau[k], &m[i][k]);
-            f->l[k][i] = m[i][k];
-        }
-    }
-}
-
-INLINE vd dot3(const vd a[3], const vd b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-/* v_rsqrt, line by line over the tile. */
+/* v_rsqrt and v_reciprocal, line by line over the tile. */
 INLINE void rsqrt_tile(const vd x[TILE], vd y[TILE]) {
 #if W == 8 && !defined(EXACT_RSQRT)
     vd e[TILE], p[TILE];
@@ -71,23 +36,70 @@ INLINE void rsqrt_tile(const vd x[TILE], vd y[TILE]) {
 #endif
 }
 
+INLINE vd dot3(const vd a[3], const vd b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* The sum over i = k..3 of a_i b_i. */
+INLINE vd dot_from(const int k, const vd a[4], const vd b[4]) {
+    vd p = a[3] * b[3];
+    UPTO(3, i) if (i >= k) p += a[i] * b[i];
+    return p;
+}
+
+/* Column k of the factorisation: H x = -sign(x_k) |x| e_k, applied to the columns after it.
+ * v = x + sign(x_k) |x| e_k, so v.y = x.y + sign(x_k) |x| y_k need not wait for the norm. */
+INLINE void factor_column(Svd f[TILE], vd m[TILE][3][4], const int k) {
+    vd n2[TILE], norm[TILE], p[3][TILE];
+    EACH n2[j] = v_max(dot_from(k, m[j][k], m[j][k]), v_set(TINY));
+    rsqrt_tile(n2, norm);
+    UPTO(3, i) if (i > k) EACH p[i][j] = dot_from(k, m[j][k], m[j][i]);
+    EACH norm[j] *= n2[j];
+    EACH f[j].tau[k] = v_reciprocal(n2[j] + v_abs(m[j][k][k]) * norm[j]);
+    EACH norm[j] = v_copysign(norm[j], m[j][k][k]);
+    UPTO(3, i) if (i > k) EACH p[i][j] += norm[j] * m[j][i][k];
+    EACH f[j].l[k][k] = -norm[j];
+    EACH m[j][k][k] += norm[j];
+    UPTO(3, i) if (i > k) {
+        EACH p[i][j] *= f[j].tau[k];
+        UPTO(4, n) if (n >= k) EACH m[j][i][n] -= p[i][j] * m[j][k][n];
+        EACH f[j].l[k][i] = m[j][i][k];
+    }
+    UPTO(4, i) if (i >= k) EACH f[j].v[k][i] = m[j][k][i];
+}
+
+INLINE void factor(const State x[TILE], Svd f[TILE]) {
+    vd m[TILE][3][4];
+    EACH {
+        const vd *s = x[j].s, *c = x[j].c;
+        vd rows[3][4] = {{-COS_B * c[0], s[1], COS_B * c[2], -s[3]},
+                         {-s[0], -COS_B * c[1], s[2], COS_B * c[3]},
+                         {SIN_B * c[0], SIN_B * c[1], SIN_B * c[2], SIN_B * c[3]}};
+        UPTO(3, k) UPTO(4, i) m[j][k][i] = rows[k][i];
+    }
+    factor_column(f, m, 0);
+    factor_column(f, m, 1);
+    factor_column(f, m, 2);
+    EACH f[j].l[1][0] = f[j].l[2][0] = f[j].l[2][1] = v_set(0.0);
+    EACH UPTO(3, k) UPTO(3, i) f[j].z[k][i] = v_set(i == k);
+    EACH UPTO(3, k) f[j].n2[k] = dot3(f[j].l[k], f[j].l[k]);
+}
+
 INLINE void rotate(vd *a, vd *b, vd c, vd s) {
     vd t = c * *a - s * *b;
     *b = s * *a + c * *b;
     *a = t;
 }
 
-/* The inner Jacobi rotation that makes columns p and r orthogonal, line by line over the tile.
+/* The inner Jacobi rotation that makes columns p and r orthogonal.
  * With d = |r|^2 - |p|^2, g = p.r:  1/h = (d^2/4 + g^2)^-1/2,  c^2 = 1/2 + |d| / (4 h),
  * s = sign(d) g / (2 h c); |d| is kept off zero so that d = g = 0 gives c = 1. */
 INLINE void orthogonalise(Svd f[TILE], int p, int r) {
     vd g[TILE], d[TILE], quarter[TILE], h2[TILE], rh[TILE], c2[TILE], rc[TILE], s[TILE], c[TILE];
-    EACH g[j] = f[j].l[p][0] * f[j].l[r][0];
-    EACH g[j] += f[j].l[p][1] * f[j].l[r][1];
-    EACH g[j] += f[j].l[p][2] * f[j].l[r][2];
+    EACH g[j] = f[j].l[p][2] * f[j].l[r][2];
     EACH d[j] = f[j].n2[r] - f[j].n2[p];
+    EACH g[j] += f[j].l[p][1] * f[j].l[r][1];
     EACH s[j] = v_copysign(v_set(0.5), d[j]);
     EACH d[j] = v_maxabs(d[j], v_set(SMALL));
+    EACH g[j] += f[j].l[p][0] * f[j].l[r][0];
     EACH quarter[j] = 0.25 * d[j];
     EACH h2[j] = quarter[j] * d[j];
     EACH h2[j] += g[j] * g[j];
@@ -105,63 +117,66 @@ INLINE void orthogonalise(Svd f[TILE], int p, int r) {
     EACH f[j].n2[r] += g[j];
 }
 
-INLINE void order(Svd *f, int p, int r) {
-    vm swap = v_less(f->n2[p], f->n2[r]);
-    vd big = v_select(swap, f->n2[r], f->n2[p]), small = v_select(swap, f->n2[p], f->n2[r]);
-    f->n2[p] = big;
-    f->n2[r] = small;
-    UPTO(3, i) {
-        vd lp = f->l[p][i], lr = f->l[r][i], zp = f->z[p][i], zr = f->z[r][i];
-        f->l[p][i] = v_select(swap, lr, lp);
-        f->l[r][i] = v_select(swap, lp, lr);
-        f->z[p][i] = v_select(swap, zr, zp);
-        f->z[r][i] = v_select(swap, zp, zr);
-    }
+INLINE void swap_if(vm swap, vd *a, vd *b) {
+    vd t = v_select(swap, *b, *a);
+    *b = v_select(swap, *a, *b);
+    *a = t;
 }
 
-/* U (columns f->l), singular values and V's three columns that belong to them. */
-INLINE void finish(Svd *f, vd sigma[3], vd inverse[3], vd v[3][4]) {
-    for (int k = 0; k < 3; k++) {
-        vd n2 = v_max(f->n2[k], v_set(TINY));
+INLINE void order(Svd *f, int p, int r) {
+    vm swap = v_less(f->n2[p], f->n2[r]);
+    swap_if(swap, &f->n2[p], &f->n2[r]);
+    UPTO(3, i) swap_if(swap, &f->l[p][i], &f->l[r][i]);
+    UPTO(3, i) swap_if(swap, &f->z[p][i], &f->z[r][i]);
+}
+
+/* v = H_0 H_1 H_2 (z, 0), a column of V */
+INLINE void right_vector(const Svd *f, const vd z[3], vd v[4]) {
+    vd p = f->tau[2] * (f->v[2][2] * z[2]);
+    v[0] = z[0];
+    v[1] = z[1];
+    v[2] = z[2] - p * f->v[2][2];
+    v[3] = -(p * f->v[2][3]);
+    p = f->tau[1] * dot_from(1, f->v[1], v);
+    UPTO(4, i) if (i > 0) v[i] -= p * f->v[1][i];
+    p = f->tau[0] * dot_from(0, f->v[0], v);
+    UPTO(4, i) v[i] -= p * f->v[0][i];
+}
+
+/* Normalise: U in f->l, singular values, their inverses. */
+INLINE void left_vectors(Svd *f, vd sigma[3], vd inverse[3]) {
+    UPTO(3, k) {
+        vd n2 = v_max(dot3(f->l[k], f->l[k]), v_set(TINY));
         inverse[k] = v_rsqrt(n2);
         sigma[k] = n2 * inverse[k];
         UPTO(3, i) f->l[k][i] *= inverse[k];
-        UPTO(3, i) v[k][i] = f->z[k][i];
-        v[k][3] = v_set(0.0);
-        for (int i = 2; i >= 0; i--) reflect(4 - i, &f->v[i][i], f->tau[i], &v[k][i]);
     }
 }
 
-INLINE void apply_law(Svd *f, const vd hdot[3], vd rate[4]) {
-    vd sigma[3], gain[3], v[3][4];
-    finish(f, sigma, gain, v);
+/* The law's formula on one vector's finished decomposition. */
+INLINE void apply_svd(const State *x, Svd *f, vd rate[4]) {
+    vd hdot[3], sigma[3], gain[3], v[3][4];
+    order(f, 0, 1);
+    order(f, 0, 2);
+    order(f, 1, 2);
+    left_vectors(f, sigma, gain);
+    UPTO(3, k) right_vector(f, f->z[k], v[k]);
     vd s2 = sigma[2] * sigma[2];
     gain[2] = sigma[2] * v_reciprocal(s2 + 0.01 * v_exp(-10.0 * s2));
-    for (int k = 0; k < 3; k++) gain[k] *= dot3(f->l[k], hdot);
-    for (int i = 0; i < 4; i++) rate[i] = v[0][i] * gain[0] + v[1][i] * gain[1] + v[2][i] * gain[2];
+    wanted_momentum_rate(x, hdot);
+    UPTO(3, k) gain[k] *= dot3(f->l[k], hdot);
+    UPTO(4, i) rate[i] = v[0][i] * gain[0] + v[1][i] * gain[1] + v[2][i] * gain[2];
 }
 
-INLINE void law_svd(const State x[TILE], const vd hdot[TILE][3], vd rate[TILE][4]) {
+INLINE void law_svd(const State x[TILE], vd rate[TILE][4]) {
     Svd f[TILE];
-    EACH factor(&x[j], &f[j]);
-    EACH UPTO(3, k) UPTO(3, i) f[j].z[k][i] = v_set(i == k);
-    EACH UPTO(3, k) UPTO(k, i) f[j].l[k][i] = v_set(0.0);
-    EACH UPTO(3, k) f[j].n2[k] = dot3(f[j].l[k], f[j].l[k]);
-#ifdef ROLL
-_Pragma("GCC unroll 1")
-#else
-_Pragma("GCC unroll 8")
-#endif
- for (int sweep = 0; sweep < SWEEPS; sweep++) {
+    factor(x, f);
+    _Pragma("GCC unroll 1") for (int sweep = 0; sweep < SWEEPS; sweep++) {
         orthogonalise(f, 0, 1);
         orthogonalise(f, 0, 2);
         orthogonalise(f, 1, 2);
     }
-    EACH UPTO(3, k) f[j].n2[k] = dot3(f[j].l[k], f[j].l[k]);
-    EACH order(&f[j], 0, 1);
-    EACH order(&f[j], 0, 2);
-    EACH order(&f[j], 1, 2);
-    EACH apply_law(&f[j], hdot[j], rate[j]);
+    FINISH apply_svd(&x[j], &f[j], rate[j]);
 }
 
 #endif

@@ -23,6 +23,7 @@
 #define TILE 1 /* vectors that advance together, to hide latency */
 #endif
 #define EACH _Pragma("GCC unroll 8") for (int j = 0; j < TILE; j++)
+#define ROLLED _Pragma("GCC unroll 1") for (int j = 0; j < TILE; j++)
 #define UPTO(n, i) _Pragma("GCC unroll 8") for (int i = 0; i < n; i++)
 
 /* A symmetric 3 x 3 matrix. */

@@ -44,37 +44,49 @@ INLINE void last_stage(State *x, const vd rate[4], const vd z[7], vd sum[7]) {
     normalise(sum, x);
 }
 
-INLINE void command_rates(State x[TILE], int law, vd rate[TILE][4]) {
-    vd hdot[TILE][3], raw[TILE][4], den[TILE];
-    EACH wanted_momentum_rate(&x[j], hdot[j]);
-    if (law == LAW_SVD) {
-        EACH den[j] = v_set(1.0);
-        law_svd(x, hdot, raw);
-    } else {
-        EACH den[j] = law_sr(&x[j], hdot[j], law == LAW_GRADIENT, raw[j]);
-    }
-    EACH limit_rates(raw[j], den[j], rate[j]);
-}
-
 /* What the law can do as soon as the gimbal angles of its next turn are known. */
 INLINE void look_ahead(State *x, int law) {
     array_momentum(x->s, x->c, x->h);
     if (law != LAW_SVD) prepare_sr(x, law == LAW_GRADIENT);
 }
 
+/* Hold the rates for one step. */
+INLINE void hold_rates(State *x, const vd rate[4], int law) {
+    vd d[4], s[4], c[4], h[3], u[3], y[7], z[7], sum[7];
+    gimbals(x->d, rate, DT / 2, d, s, c);
+    first_stage(x, rate, y, sum, z);
+    array_momentum(s, c, h);
+    array_torque(s, c, rate, u);
+    middle_stage(y, h, u, DT / 2, sum, z);
+    gimbals(x->d, rate, DT, x->d, x->s, x->c);
+    middle_stage(y, h, u, DT, sum, z);
+    look_ahead(x, law);
+    last_stage(x, rate, z, sum);
+}
+
+INLINE void step_sr(State *x, int law) {
+    vd hdot[3], raw[4], rate[4];
+    wanted_momentum_rate(x, hdot);
+    vd det = law_sr(x, hdot, law == LAW_GRADIENT, raw);
+    limit_rates(raw, det, rate);
+    hold_rates(x, rate, law);
+}
+
+INLINE void step_svd(State x[TILE]) {
+    vd raw[TILE][4];
+    law_svd(x, raw);
+    ROLLED {
+        vd rate[4];
+        limit_rates(raw[j], v_set(1.0), rate);
+        hold_rates(&x[j], rate, LAW_SVD);
+    }
+}
+
 INLINE void step(State x[TILE], int law) {
-    vd rate[TILE][4], d[TILE][4], s[TILE][4], c[TILE][4], h[TILE][3], u[TILE][3];
-    vd y[TILE][7], z[TILE][7], sum[TILE][7];
-    command_rates(x, law, rate);
-    EACH gimbals(x[j].d, rate[j], DT / 2, d[j], s[j], c[j]);
-    EACH first_stage(&x[j], rate[j], y[j], sum[j], z[j]);
-    EACH array_momentum(s[j], c[j], h[j]);
-    EACH array_torque(s[j], c[j], rate[j], u[j]);
-    EACH middle_stage(y[j], h[j], u[j], DT / 2, sum[j], z[j]);
-    EACH gimbals(x[j].d, rate[j], DT, x[j].d, x[j].s, x[j].c);
-    EACH middle_stage(y[j], h[j], u[j], DT, sum[j], z[j]);
-    EACH look_ahead(&x[j], law);
-    EACH last_stage(&x[j], rate[j], z[j], sum[j]);
+    if (law == LAW_SVD)
+        step_svd(x);
+    else
+        EACH step_sr(&x[j], law);
 }
 
 #endif

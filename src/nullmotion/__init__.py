@@ -17,6 +17,8 @@ _WHERE = {
     "Law": "nullmotion.law",
     "Claim": "nullmotion.law",
     "Observation": "nullmotion.law",
+    "prepare": "nullmotion.prepared",
+    "PreparedLaw": "nullmotion.prepared",
     "NullmotionError": "nullmotion.errors",
     "InputError": "nullmotion.errors",
 }

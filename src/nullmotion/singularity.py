@@ -21,9 +21,10 @@ import numpy as np
 from nullmotion.array.model import CmgArray
 from nullmotion.errors import InputError
 
-_GRID = {1: 1, 2: 360, 3: 2400}  # directions; 3 deg apart on the half sphere
-_STARTS = 12  # least local minima of the grid that are polished
-_STEPS = 40  # damped Newton steps; ten do but for minima beside a gimbal axis
+_GRID = {1: 1, 2: 360, 3: 1200}  # directions; 4 deg apart on the half sphere
+_STARTS = 10  # least local minima of the grid that are polished
+_STEPS = 30  # damped Newton steps; six do, save for minima close to a gimbal axis
+_SETTLED = 1e-11  # rad; Newton steps below it end the polish
 _FREE = 1e-20  # squared sine of the angle between u and a gimbal axis, below which it is on it
 _LEAST_SIGMA = 1e-16  # divisor of the condition number at a singular state
 _CHUNK = 64  # configurations searched at once: keeps the grid's values in the cache
@@ -95,7 +96,7 @@ def nearest(array: CmgArray, delta: Any) -> Nearest:
 def _checked(array: CmgArray, delta: Any) -> np.ndarray:
     angles = np.asarray(delta, float)
     if angles.ndim == 0 or angles.shape[-1] != array.n:
-        raise InputError("delta", angles.tolist(), f"{array.n} gimbal angles (rad), one for each CMG")
+        raise InputError("delta", angles.tolist(), f"{array.n} gimbal angles (rad)")
     if not np.isfinite(angles).all():
         raise InputError("delta", angles.tolist(), "finite gimbal angles (rad)")
     return angles
@@ -140,7 +141,8 @@ def _search(array: CmgArray, delta: np.ndarray) -> tuple[np.ndarray, np.ndarray]
         parts = [_search(array, part) for part in np.array_split(delta, -(-len(delta) // _CHUNK))]
         return np.concatenate([d for d, _ in parts]), np.concatenate([u for _, u in parts])
     spin, torque = _frames(array, delta)
-    u = np.concatenate([_polished(spin, torque, _starts(spin, torque)), _axes(array, len(delta))], axis=1)
+    polished = _polished(spin, torque, _starts(spin, torque))
+    u = np.concatenate([polished, _axes(array, len(delta))], axis=1)
     cost = _cost(spin, torque, u)
     best = np.argmin(cost, axis=1)
     rows = np.arange(len(delta))
@@ -197,7 +199,7 @@ def _polished(spin: np.ndarray, torque: np.ndarray, u: np.ndarray) -> np.ndarray
         better = trial_cost < cost
         u, cost = np.where(better[..., None], trial, u), np.where(better, trial_cost, cost)
         damping = np.where(better, damping * 0.1, damping * 8.0)
-        if not better.any() and np.all(damping > 1e6):
+        if np.abs(step).max() < _SETTLED:
             break
     return u
 

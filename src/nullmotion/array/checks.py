@@ -59,6 +59,17 @@ def per_cmg(key: str, value: Any, n: int, allowed: str, good: Callable[[np.ndarr
     return array
 
 
+def checked_limits(key: str, value: Any, n: int) -> np.ndarray:
+    """Return lowest and highest gimbal angle of each CMG, (n, 2), checked."""
+    try:
+        limits = np.broadcast_to(np.asarray(value, float), (n, 2)).copy()
+    except (TypeError, ValueError) as error:
+        raise InputError(key, value, f"two numbers, or {n} x 2: lowest and highest (rad)") from error
+    if not np.all(limits[:, 0] < limits[:, 1]):
+        raise InputError(key, limits.tolist(), "lowest below highest (rad)")
+    return limits
+
+
 def torque_basis(gimbal_axes: np.ndarray) -> np.ndarray:
     """Return the torque space's axes: all of B, or the plane normal to parallel gimbal axes.
 

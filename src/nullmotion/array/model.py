@@ -18,7 +18,7 @@ from typing import Any, Literal
 import numpy as np
 
 from nullmotion import ops
-from nullmotion.array.checks import as_vectors, checked_axes, per_cmg, torque_basis
+from nullmotion.array.checks import as_vectors, checked_axes, checked_limits, per_cmg, torque_basis
 from nullmotion.errors import InputError
 
 RateLimitMode = Literal["scale", "clip"]
@@ -69,10 +69,7 @@ class CmgArray:
         put(self, "rate_limit", per_cmg("rate_limit", self.rate_limit, n, "above 0 (rad/s)", lambda v: v > 0))
         if self.rate_limit_mode not in ("scale", "clip"):
             raise InputError("rate_limit_mode", self.rate_limit_mode, "'scale' or 'clip'")
-        limits = np.broadcast_to(np.asarray(self.angle_limits, float), (n, 2)).copy()
-        if not np.all(limits[:, 0] < limits[:, 1]):
-            raise InputError("angle_limits", limits.tolist(), "lower limit below upper limit (rad)")
-        put(self, "angle_limits", limits)
+        put(self, "angle_limits", checked_limits("angle_limits", self.angle_limits, n))
         put(self, "momentum_bias", as_vectors("momentum_bias", self.momentum_bias, 1)[0])
         put(self, "torque_axes", torque_basis(gimbal) if self.torque_axes is None else self._checked_basis())
 
@@ -172,18 +169,20 @@ class CmgArray:
         Args:
             failed: Index of a CMG counted from 0, or several.
             frozen_at: Gimbal angle [rad] at which each failed CMG stays with its wheel
-                spinning, its momentum kept as bias; without it the momentum is gone.
+                spinning, its momentum kept as bias; one, or one for each in the order of
+                ``failed``. Without it the momentum is gone.
 
         Raises:
             InputError: For an index out of range, or when no CMG would be left.
         """
-        gone = sorted({int(failed)} if isinstance(failed, (int, np.integer)) else {int(i) for i in failed})
-        if not gone or gone[0] < 0 or gone[-1] >= self.n or len(gone) == self.n:
-            raise InputError("failed CMG", failed, f"indices 0 to {self.n - 1}, at least one CMG left")
+        gone = [int(failed)] if isinstance(failed, (int, np.integer)) else [int(i) for i in failed]
+        if not gone or min(gone) < 0 or max(gone) >= self.n or not len(set(gone)) == len(gone) < self.n:
+            allowed = f"different indices 0 to {self.n - 1}, at least one CMG left"
+            raise InputError("failed CMG", gone, allowed)
         keep = [i for i in range(self.n) if i not in gone]
         bias = self.momentum_bias
         if frozen_at is not None:
-            angles = np.broadcast_to(np.asarray(frozen_at, float), (len(gone),))
+            angles = per_cmg("frozen_at", frozen_at, len(gone), "finite angles (rad)", np.isfinite)
             c, s = np.cos(angles)[:, None], np.sin(angles)[:, None]
             held = c * self.spin_axes[gone] + s * self.transverse_axes[gone]
             bias = bias + self.h0[gone] @ held
@@ -196,5 +195,5 @@ class CmgArray:
             self.angle_limits[keep],
             bias,
             self.torque_axes,
-            f"{self.label} without CMG {', '.join(str(i) for i in gone)}",
+            f"{self.label} without CMG {', '.join(str(i) for i in sorted(gone))}",
         )

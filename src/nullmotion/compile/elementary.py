@@ -20,6 +20,7 @@ from nullmotion.compile.tape import (
     equal,
     exponent,
     fma,
+    guard,
     maximum,
     minimum,
     power_of_two,
@@ -96,6 +97,7 @@ def _reduce(x: Symbol) -> tuple[Symbol, Symbol, Symbol]:
     k p1 is exact: p1 has 33 bits. The last part leaves an error below 1e-37, while
     no double below 1e5 comes nearer to a multiple of π/2 than 6e-19.
     """
+    guard("angle-range", abs(x) <= GUARDED_LIMIT)
     k = fma(x, 2.0 / math.pi, _ROUND) - _ROUND
     first = fma(k, -_PI_2[0], x)
     r = fma(k, -_PI_2[1], first)

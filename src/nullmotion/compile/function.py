@@ -58,6 +58,30 @@ def _address(base: str, row: str, stride: str, lane: str, name: str) -> list[str
     ]
 
 
+def call_source(program: Program, carried: int) -> str:
+    """Return IR of ``call(io)``: one evaluation on one buffer, for the least call overhead.
+
+    The buffer holds the inputs, then the outputs and a status for each guard. The last
+    ``carried`` outputs go back to the last ``carried`` inputs: a state that is carried on.
+    """
+    shape = llvm.Shape(1)
+    count = len(program.inputs)
+    lines = ["define void @call(ptr %io) #0 {"]
+    for v in range(count):
+        lines += load(shape, "%io", f"{v}", "1", "0", f"%in{v}")
+    code, outputs, guards = llvm.body(program, [f"%in{v}" for v in range(count)], shape, "v")
+    lines += [f"  {line}" for line in code]
+    for j, condition in enumerate(guards.values()):
+        zero, one = shape.constant(0.0), shape.constant(1.0)
+        lines.append(f"  %guard{j} = select {shape.boolean} {condition}, {shape.real} {zero}, {shape.real} {one}")
+    fresh = len(outputs) - carried
+    values = [*outputs[:fresh], *[f"%guard{j}" for j in range(len(guards))], *outputs[fresh:]]
+    rows = [*range(count, count + fresh + len(guards)), *range(count - carried, count)]
+    for row, name in zip(rows, values, strict=True):
+        lines += store(shape, "%io", f"{row}", "1", "0", name, f"%out{row}")
+    return "\n".join([*llvm.declarations(shape), *lines, "  ret void", "}", llvm.ATTRIBUTES])
+
+
 MAP_TYPES = (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64)
 
 

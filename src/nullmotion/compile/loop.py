@@ -19,7 +19,7 @@ from nullmotion import tree
 from nullmotion.compile import llvm
 from nullmotion.compile.function import load, store
 from nullmotion.compile.program import Program, finish
-from nullmotion.compile.tape import Symbol, Tape
+from nullmotion.compile.tape import Symbol, Tape, tracing
 
 StageFunction = Callable[[Any, Any, Any, Any], Any]  # (k, row, state, parameters) -> state
 
@@ -106,7 +106,8 @@ def _parameters(tape: Tape, loop: Loop) -> tuple[Any, list[Symbol]]:
 def _trace_start(loop: Loop, fuse: bool) -> tuple[Program, Any]:
     tape = Tape()
     parameters, inputs = _parameters(tape, loop)
-    state = loop.start(parameters)
+    with tracing():
+        state = loop.start(parameters)
     return finish(tape, inputs, tree.flatten(state), fuse), state
 
 
@@ -118,10 +119,11 @@ def _trace_stages(loop: Loop, stages: Sequence[tuple[int, Stage]], like: Any, re
     k = tape.input("k")
     row = tape.inputs("row", loop.row)
     record: Any = ()
-    for index, stage in stages:
-        if recording and loop.record is not None and index == loop.recorded_after:
-            record = loop.record(state)
-        state = stage.function(k, row, state, parameters)
+    with tracing():
+        for index, stage in stages:
+            if recording and loop.record is not None and index == loop.recorded_after:
+                record = loop.record(state)
+            state = stage.function(k, row, state, parameters)
     kept = tree.flatten(record)
     outputs = [*tree.flatten(state), *kept]
     return finish(tape, [*state_in, *parameter_in, k, *row], outputs, fuse), len(kept), record

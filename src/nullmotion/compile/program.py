@@ -11,7 +11,7 @@ import numpy as np
 
 from nullmotion import tree
 from nullmotion.compile.operations import OPERATIONS
-from nullmotion.compile.tape import Node, Symbol, Tape
+from nullmotion.compile.tape import Node, Symbol, Tape, tracing
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,8 @@ def trace(function: Callable[..., Any], *examples: Any, fuse: bool = True) -> tu
         symbols = tape.inputs(f"x{i}", len(tree.flatten(example)))
         inputs.extend(symbols)
         arguments.append(tree.unflatten(example, list(symbols)))
-    result = function(*arguments)
+    with tracing():
+        result = function(*arguments)
     return finish(tape, inputs, tree.flatten(result), fuse), result
 
 

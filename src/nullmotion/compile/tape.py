@@ -8,10 +8,13 @@ as they appear, and `Tape.program` drops what no output needs.
 from __future__ import annotations
 
 import math
+import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -179,17 +182,34 @@ _RULES: dict[str, Callable[[Tape, tuple[int, ...], Sequence[Any]], int | None]] 
 }
 
 
+def _machinery(file: str) -> bool:
+    """Return whether a source file belongs to tracing itself rather than to what is traced."""
+    inside = file.startswith((str(Path(_PACKAGE) / "compile"), str(Path(_PACKAGE) / "ops.py")))
+    return inside or f"{os.sep}numpy{os.sep}" in file
+
+
 def _user_frame() -> tuple[str, int]:
-    """Return file and line of the innermost frame outside the tracing machinery."""
-    frame = sys._getframe(1)
-    place = ("", 0)
+    """Return file and line of the innermost running frame outside the tracing machinery."""
+    frame: FrameType | None = sys._getframe(1)
     while frame is not None:
-        name = frame.f_code.co_filename
-        if "numpy" not in name and not name.startswith(str(Path(_PACKAGE) / "compile")):
-            if not name.endswith("nullmotion/ops.py"):
-                return name, frame.f_lineno
-        frame = frame.f_back  # type: ignore[assignment]
-    return place
+        if not _machinery(frame.f_code.co_filename):
+            return frame.f_code.co_filename, frame.f_lineno
+        frame = frame.f_back
+    return "", 0
+
+
+@contextmanager
+def tracing() -> Iterator[None]:
+    """Turn the errors of routines that cannot take symbols into a `TraceError` with its place."""
+    try:
+        yield
+    except (TypeError, AttributeError, ValueError, IndexError) as error:
+        place, frame = ("", 0), error.__traceback__
+        while frame is not None:
+            if not _machinery(frame.tb_frame.f_code.co_filename):
+                place = (frame.tb_frame.f_code.co_filename, frame.tb_lineno)
+            frame = frame.tb_next
+        raise TraceError(f"this line does not work on symbols ({type(error).__name__}: {error})", *place) from error
 
 
 class Symbol:
@@ -436,7 +456,20 @@ def is_odd(k: Any) -> Any:
     return bit(k, 0)
 
 
+_guarding = [True]
+
+
+@contextmanager
+def unguarded() -> Iterator[None]:
+    """Record no guards inside, where arguments are known to lie between guarded ones."""
+    before, _guarding[0] = _guarding[0], False
+    try:
+        yield
+    finally:
+        _guarding[0] = before
+
+
 def guard(flag: str, condition: Any) -> None:
     """Ask that ``condition`` holds wherever it is evaluated; a kernel reports ``flag`` if not."""
-    if isinstance(condition, Symbol):
+    if _guarding[0] and isinstance(condition, Symbol):
         condition.tape.guard(flag, condition.node)

@@ -14,6 +14,7 @@ from nullmotion.plot.quantities import (
 )
 from nullmotion.plot.view import Curve, Level, Panel, Run, bundle
 
+NEAR_LIMIT = 0.2  # share of the rate limit from which its line leaves room for the curves
 NORMALISED = "for A divided by the mean momentum of the working CMGs"
 
 
@@ -54,16 +55,20 @@ def momentum_norm(run: Run) -> Panel:
 
 
 def rates(run: Run) -> Panel:
-    """Gimbal rates with their limits."""
-    largest = np.nanmax(np.abs(run.rates), initial=0.0)
-    levels = []
+    """Gimbal rates with their limits; a limit far off is said, not drawn."""
+    low, high = np.nanmin(run.rates, initial=0.0), np.nanmax(run.rates, initial=0.0)
+    levels, far = [], []
     for limit in rate_limits(run):
-        low = np.nanmin(run.rates, initial=0.0)
-        levels.append(Level(np.degrees(limit), f"limit {np.degrees(limit):.4g} deg/s"))
-        if low < -0.3 * largest:
+        words = f"limit {np.degrees(limit):.4g} deg/s"
+        if max(high, -low) < NEAR_LIMIT * limit:
+            far.append(words)
+            continue
+        levels.append(Level(np.degrees(limit), words))
+        if low < -NEAR_LIMIT * limit:
             levels.append(Level(-np.degrees(limit), ""))
     curves = bundle(run.t, np.degrees(run.rates), cmg_names(run))
-    return Panel("rates", "Gimbal rates", "Rate [deg/s]", curves, tuple(levels))
+    note = f"Far below the {', '.join(far)}." if far else ""
+    return Panel("rates", "Gimbal rates", "Rate [deg/s]", curves, tuple(levels), note)
 
 
 def angles(run: Run) -> Panel:

@@ -13,11 +13,11 @@ from nullmotion.plot.view import Curve, Panel
 # metric, title, unit on the axis, factor to that unit
 VARIED_METRICS = (
     ("stopped_at_s", "Time to stop", "s", 1.0),
-    ("min_sigma_min", "Least sigma_min", "-", 1.0),
+    ("final_momentum_reserve_Nms", "Momentum reserve at the end", "N m s", 1.0),
     ("max_off_axis_torque_fraction", "Off-axis torque, peak", "% of command", 100.0),
-    ("max_along_axis_torque_error_fraction", "Along-axis torque error, peak", "% of command", 100.0),
+    ("max_along_axis_torque_fraction", "Along-axis torque error, peak", "% of command", 100.0),
     ("max_rate_step_rad_s", "Largest rate step", "rad/s", 1.0),
-    ("final_momentum_reserve", "Momentum reserve at the end", "N m s", 1.0),
+    ("min_sigma_min", "Least sigma_min", "-", 1.0),
 )
 
 

@@ -6,6 +6,7 @@ import base64
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from html import escape
 from typing import Any
 
 import numpy as np
@@ -38,7 +39,6 @@ class Charts:
 
     Args:
         most: Points a curve may have.
-        toggles: Whether one legend of the page switches a curve in all charts at once.
     """
 
     most: int = MOST_POINTS
@@ -53,17 +53,19 @@ class Charts:
         fits = MOST_BYTES // (max(curves, 1) * _BYTES_PER_POINT)
         return cls(most=max(LEAST_POINTS, min(MOST_POINTS, fits)))
 
-    def add(self, panel: Panel, group: str = "", legend: bool = True, small: bool = False) -> Markup:
+    def add(self, panel: Panel, group: str = "", legend: str = "", small: bool = False) -> Markup:
         """Add a chart and return the element in which it will be drawn.
 
         Args:
             panel: What to draw.
             group: Charts of one group share zoom and cursor; empty for a chart by itself.
-            legend: Whether it has its own legend (with values at the cursor).
+            legend: Name of the legend it shares (`shared_legend`); by default it has
+                its own, with values at the cursor.
             small: Small multiple: less height.
         """
         self.figures[panel.key] = {
             "group": group,
+            "legend": legend,
             "title": panel.title,
             "traces": [self._trace(curve) for curve in panel.curves],
             "layout": _layout(panel),
@@ -71,7 +73,7 @@ class Charts:
         return tag(
             "figure",
             tag("figcaption", tag("h3", panel.title), panel.note and tag("p", panel.note)),
-            tag("div", class_="legend", data_legend=panel.key) if legend else "",
+            "" if legend else tag("div", class_="legend", data_legend=panel.key),
             tag("div", class_="plot", id=f"plot-{panel.key}", data_chart=panel.key, role="img",
                 aria_label=f"Chart: {panel.title}. {panel.y_title} over {panel.x_title}."),
             class_="chart small" if small else "chart",
@@ -113,10 +115,15 @@ def grid(charts: Sequence[Markup], small: bool = False) -> Markup:
     return tag("div", join(*charts), class_="charts small" if small else "charts")
 
 
+def shared_legend(name: str) -> Markup:
+    """Return the place of a legend that switches a curve in all charts that name it."""
+    return tag("div", class_="legend", data_common_legend=name)
+
+
 def _layout(panel: Panel) -> dict[str, Any]:
     return {
-        "xaxis": {**_AXIS, "title": {"text": panel.x_title, "standoff": 6}},
-        "yaxis": {**_AXIS, "title": {"text": panel.y_title, "standoff": 4}, "nticks": 6},
+        "xaxis": {**_AXIS, "title": {"text": escape(panel.x_title), "standoff": 6}},
+        "yaxis": {**_AXIS, "title": {"text": escape(panel.y_title), "standoff": 4}, "nticks": 6},
         "shapes": [_level_line(level.value) for level in panel.levels],
         "annotations": [_level_name(level.value, level.label) for level in panel.levels if level.label],
     }
@@ -130,6 +137,6 @@ def _level_line(value: float) -> dict[str, Any]:
 def _level_name(value: float, label: str) -> dict[str, Any]:
     return {
         "xref": "paper", "x": 1, "xanchor": "right", "y": value, "yanchor": "bottom",
-        "text": label, "showarrow": False, "font": {"size": 11, "color": palette.QUIET},
+        "text": escape(label), "showarrow": False, "font": {"size": 11, "color": palette.QUIET},
         "bgcolor": "rgba(255,255,255,0.75)", "borderpad": 1,
     }

@@ -66,7 +66,7 @@ def _steps(time: float, dt: float) -> int:
 
 
 def stops(section: StopSection) -> tuple[Stop, ...]:
-    """Return the stop conditions in the order of the file."""
+    """Return the stop conditions, by the metric's name."""
     return tuple(
         Stop(metric(key.rpartition("_")[0]), value, key.endswith("_below"))
         for key, value in section.model_dump(exclude_unset=True).items()

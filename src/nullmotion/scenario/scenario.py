@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import PurePath
 from typing import Any
 
-from nullmotion.scenario.problems import ScenarioError
 from nullmotion.scenario.schema import (
     About,
     ArraySection,
@@ -66,6 +65,19 @@ class Scenario:
         kept = {k: getattr(self.law, k) for k in ("period_s", "delay_s") if self.law.given(k)}
         return checked(self.source.over({"law": {**own, **kept}}, "compare.case"))
 
+    def named_files(self) -> dict[str, str]:
+        """Return the text of the files that the scenario names."""
+        name = self.mission.profile
+        return {} if name is None else {name: self.source.read(name)}
+
+    def layout_parameters(self) -> dict[str, Any]:
+        """Return the layout's parameters as in files, defaults put in."""
+        from nullmotion.scenario import objects, sections
+
+        if self.array.layout == sections.CUSTOM:
+            return {}
+        return sections.written(objects.layout(self.array))
+
 
 def checked(source: Source) -> Scenario:
     """Return the scenario of a source.
@@ -77,8 +89,7 @@ def checked(source: Source) -> Scenario:
 
     validator = Validator(source)
     found = validator.sections()
-    if validator.problems:
-        raise ScenarioError(validator.problems)
+    validator.raise_problems()
     scenario = Scenario(
         source,
         found.get("scenario") or About(),
@@ -92,6 +103,5 @@ def checked(source: Source) -> Scenario:
         tuple(found["compare"]),
     )
     check(scenario, validator)
-    if validator.problems:
-        raise ScenarioError(validator.problems)
+    validator.raise_problems()
     return scenario

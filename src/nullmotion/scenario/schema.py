@@ -14,24 +14,25 @@ Positive = Annotated[float, Field(gt=0)]
 NotNegative = Annotated[float, Field(ge=0)]
 
 
-def _shape(value: Any) -> str:
-    if not isinstance(value, tuple):
-        return "number"
-    return "rows" if value and all(isinstance(v, tuple) for v in value) else "list"
+def _is_list(value: Any) -> str:
+    return "list" if isinstance(value, tuple) else "number"
 
 
-_by_shape = Discriminator(_shape)
+def _is_rows(value: Any) -> str:
+    return "rows" if isinstance(value, tuple) and value and isinstance(value[0], tuple) else "list"
 
 
 def _one_or_each(number: Any) -> Any:
     """Return the type of one number or a list with one for each CMG."""
     listed = Annotated[tuple[number, ...], Field(min_length=1), Tag("list")]
-    return Annotated[Annotated[number, Tag("number")] | listed, _by_shape]
+    return Annotated[Annotated[number, Tag("number")] | listed, Discriminator(_is_list)]
 
 
 Pair = tuple[float, float]
 Vector = tuple[float, float, float]
-Limits = Annotated[Annotated[Pair, Tag("list")] | Annotated[tuple[Pair, ...], Tag("rows")], _by_shape]
+Limits = Annotated[
+    Annotated[Pair, Tag("list")] | Annotated[tuple[Pair, ...], Tag("rows")], Discriminator(_is_rows)
+]
 
 
 class Section(BaseModel):

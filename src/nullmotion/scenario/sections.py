@@ -64,6 +64,16 @@ def parameters(section: schema.Section, cls: type[Any]) -> dict[str, Any]:
     }
 
 
+def written(record: Any) -> dict[str, Any]:
+    """Return the fields of a layout or law as files have them."""
+    found = {}
+    for f in dataclasses.fields(record):
+        value = getattr(record, f.name)
+        degrees = f.metadata.get("unit") == "deg" and value is not None
+        found[file_key(f)] = np.degrees(value).tolist() if degrees else value
+    return found
+
+
 def _from_file(field: dataclasses.Field[Any], value: Any) -> Any:
     if field.metadata.get("unit") != "deg" or value is None:
         return value
@@ -112,7 +122,7 @@ def model_at(data: Mapping[str, Any], path: tuple[str | int, ...]) -> type[schem
     """
     found: Any = data
     for part in path:
-        found = found[part]
+        found = found.get(part, {}) if isinstance(found, Mapping) else found[part]
     match path:
         case ("array",):
             return array_model(str(found["layout"])) if "layout" in found else schema.ArraySection

@@ -12,7 +12,7 @@ from typing import Any
 
 from nullmotion.errors import InputError
 from nullmotion.scenario import toml
-from nullmotion.scenario.problems import Problem, ScenarioError
+from nullmotion.scenario.problems import MISSING, Problem, ScenarioError
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Source:
         line = line or str(self.text.count("\n") + 1)
         lines = self.text.splitlines() or [""]
         text = lines[min(int(line), len(lines)) - 1].strip()
-        return Problem("TOML", text, (what or message)[:1].lower() + (what or message)[1:], f"{self.name}:{line}")
+        return Problem("TOML", text or MISSING, (what or message)[:1].lower() + (what or message)[1:], f"{self.name}:{line}")
 
     def _put(self, data: dict[str, Any], key: str, value: Any) -> None:
         *sections, last = key.split(".")

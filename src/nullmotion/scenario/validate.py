@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from nullmotion.errors import UnknownNameError
 from nullmotion.scenario import keys, schema, sections
-from nullmotion.scenario.problems import MISSING, Problem
+from nullmotion.scenario.problems import MISSING, Problem, ScenarioError
 from nullmotion.scenario.source import Source
 from nullmotion.scenario.toml import Path
 
@@ -46,6 +46,11 @@ class Validator:
         """Start without problems."""
         self.source = source
         self.problems: list[Problem] = []
+
+    def raise_problems(self) -> None:
+        """Raise what was found, in the order of the file."""
+        if self.problems:
+            raise ScenarioError(sorted(self.problems, key=_line))
 
     def add(self, path: Path, value: Any, allowed: str) -> None:
         """Note a problem at a path of the document."""
@@ -156,6 +161,11 @@ class Validator:
             return "this key is missing"
         template = _ALLOWED.get(kind)
         return item["msg"] if template is None else template.format(**item.get("ctx", {}))
+
+
+def _line(problem: Problem) -> int:
+    line = problem.where.rpartition(":")[2]
+    return int(line) if line.isdigit() else 0
 
 
 def _dotted(path: Path) -> str:

@@ -27,7 +27,7 @@ class Planar(Layout):
 
     def __post_init__(self) -> None:
         """Refuse an array without freedom to turn its momentum."""
-        if self.n < 3:
+        if self.n < 3 or self.n % 1:
             raise InputError("array.n", self.n, "a whole number from 3")
 
     def axes(self) -> tuple[Any, Any]:

@@ -37,7 +37,7 @@ class Pyramid(Layout):
         """Refuse a flat or impossible pyramid."""
         if not 0 < self.skew <= np.pi / 2:
             raise InputError("array.skew", self.skew, "above 0, at most pi/2 rad (90 deg)")
-        if self.n < 3:
+        if self.n < 3 or self.n % 1:
             raise InputError("array.n", self.n, "a whole number from 3")
 
     def axes(self) -> tuple[Any, Any]:

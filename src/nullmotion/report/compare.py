@@ -1,0 +1,74 @@
+"""The page of a comparison."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from nullmotion.plot.overlays import angle_panels, overlays
+from nullmotion.plot.varied import varied_panels
+from nullmotion.plot.view import Case, Panel
+from nullmotion.report import page
+from nullmotion.report.charts import Charts, grid, shared_legend
+from nullmotion.report.markup import Markup, tag
+from nullmotion.report.results import outcome, result_table
+from nullmotion.report.run import thinning
+
+MOST_MULTIPLES = 24  # small multiples of gimbal angles on one page
+TALLY = {
+    "stopped": "stopped by a condition",
+    "done": "ran to the end",
+    "trouble": "stuck or failed",
+    "refused": "could not run",
+}
+
+
+def compare_report(comparison: Any, path: str | Path, title: str) -> Path:
+    """Write a comparison of laws as an HTML page that needs no network.
+
+    Args:
+        comparison: What `nullmotion.campaign.compare` returns.
+        path: File to write.
+        title: Title of the page.
+
+    Returns:
+        The path.
+    """
+    cases: Sequence[Case] = comparison.cases
+    varied = varied_panels(comparison)
+    together = [] if varied else overlays(cases)
+    multiples = [] if varied else angle_panels(cases)[:MOST_MULTIPLES]
+    charts = Charts.for_curves(sum(len(p.curves) for p in (*varied, *together, *multiples)))
+    parts = [headline(cases, title), page.section("Results", result_table(cases), id="results")]
+    if varied:
+        parts.append(curves(charts, varied, "Over the varied value", "varied", page.clockless()))
+    if together:
+        parts.append(curves(charts, together, "Over time", "time", page.toolbar()))
+    if multiples:
+        drawn = [charts.add(panel, "time", "angles", small=True) for panel in multiples]
+        parts.append(page.section("Gimbal angles", shared_legend("angles"), grid(drawn, True), id="angles"))
+    parts.append(thinning(charts))
+    ran = [case.trajectory for case in cases if case.trajectory is not None]
+    return page.write(path, page.document(title, parts, charts, page.versions(*ran)))
+
+
+def curves(charts: Charts, panels: Sequence[Panel], title: str, group: str, tools: Markup) -> Markup:
+    """Return a section of charts that share one legend, a curve a case."""
+    drawn = [charts.add(panel, group, "cases") for panel in panels]
+    return page.section(title, tag("div", tools, shared_legend("cases"), class_="tools"), grid(drawn), id=f"over-{group}")
+
+
+def headline(cases: Sequence[Case], title: str) -> Markup:
+    """Return the first lines: title, how the cases went, what they ran on."""
+    tones = Counter(outcome(case).tone for case in cases)
+    tally = ", ".join(f"{tones[tone]} {words}" for tone, words in TALLY.items() if tones[tone])
+    plural = "case" if len(cases) == 1 else "cases"
+    first = next((case.trajectory.setup.array for case in cases if case.trajectory is not None), None)
+    return tag(
+        "header",
+        tag("p", title, class_="title"),
+        tag("h1", f"{len(cases)} {plural}: {tally}"),
+        tag("p", f"On {first.label}, {first.n} CMGs", class_="subject") if first is not None else "",
+    )

@@ -1,0 +1,78 @@
+"""The table of a comparison: cases x metrics."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Literal, NamedTuple
+
+from nullmotion.plot.view import Case
+from nullmotion.report.markup import Markup, join, tag
+from nullmotion.report.ranking import COLUMNS, best, cell
+from nullmotion.report.tables import table
+from nullmotion.report.verdict import status_words, verdict
+from nullmotion.report.wording import plain
+
+KINDS = {"defaults": "defaults", "published": "as published", "given": "given"}
+MARKING = (
+    "★ and a frame mark the best value of a column among the cases that did their job "
+    "(not stuck, no failure). Torque figures are shares of the command; sigma_min is for A "
+    "divided by the mean momentum of the working CMGs."
+)
+
+
+class Outcome(NamedTuple):
+    """How a case went: a `verdict`, or why it could not run."""
+
+    words: str
+    tone: Literal["done", "stopped", "trouble", "refused"]
+
+
+def outcome(case: Any) -> Outcome:
+    """Return how a case went."""
+    if case.trajectory is None:
+        return Outcome(f"Could not run: {case.reason}", "refused")
+    return Outcome(*verdict(case.trajectory))
+
+
+def result_table(cases: Sequence[Case]) -> Markup:
+    """Return the table with its best values marked."""
+    outcomes = [outcome(case) for case in cases]
+    eligible = [o.tone in ("done", "stopped") for o in outcomes]
+    columns = []
+    for column in COLUMNS:
+        values = [case.metrics.get(column.key) for case in cases]
+        won = best(column, values, eligible)
+        columns.append([cell(column.written(v), w) for v, w in zip(values, won, strict=True)])
+    rows = [
+        (_name(case), _result(said), *numbers, _kind(case), _information(case), _status(case))
+        for case, said, *numbers in zip(cases, outcomes, *columns, strict=True)
+    ]
+    head = ("Case", "Result", *(c.title for c in COLUMNS), "Parameters", "Information used", "Status")
+    numeric = range(2, 2 + len(COLUMNS))
+    made = table(head, rows, "Cases and their results", numeric=numeric, wide=True)
+    return join(made, tag("p", MARKING, class_="note"))
+
+
+def _name(case: Any) -> Markup:
+    same = case.label.lower() == case.law.lower()
+    return join(case.label, "" if same else tag("small", case.law, class_="more"))
+
+
+def _result(said: Outcome) -> Markup | str:
+    if said.tone in ("trouble", "refused"):
+        return tag("span", said.words, class_="trouble")
+    return said.words
+
+
+def _kind(case: Any) -> str:
+    return KINDS.get(case.parameters_kind, plain(str(case.parameters_kind)))
+
+
+def _information(case: Any) -> str:
+    return ", ".join(case.information) or "angles and command only"
+
+
+def _status(case: Any) -> str:
+    if case.trajectory is None:
+        return "–"
+    return ", ".join(status_words(case.trajectory)) or "ok"

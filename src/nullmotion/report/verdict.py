@@ -1,0 +1,49 @@
+"""How a run went, in words."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from nullmotion.plot.quantities import stuck_since
+from nullmotion.plot.view import Run
+from nullmotion.report.wording import number, plain
+
+Tone = Literal["done", "stopped", "trouble"]
+
+
+class Verdict(NamedTuple):
+    """A headline and how serious it is."""
+
+    words: str
+    tone: Tone
+
+    @property
+    def useful(self) -> bool:
+        """Whether the run's numbers may be compared with others'."""
+        return self.tone != "trouble"
+
+
+def verdict(run: Run) -> Verdict:
+    """Return how a run ended."""
+    broken = _broken_at(run)
+    if broken is not None:
+        return Verdict(f"Failed: not a number from {number(broken)} s on", "trouble")
+    stuck = stuck_since(run)
+    if stuck is not None:
+        return Verdict(f"Stuck: delivers no torque from {number(stuck)} s on", "trouble")
+    if run.stopped_at_s is not None:
+        reason = plain(run.stop_reason or "a stop condition")
+        return Verdict(f"Stopped at {number(run.stopped_at_s)} s: {reason}", "stopped")
+    return Verdict(f"Ran to the end ({number(run.t[-1])} s)", "done")
+
+
+def _broken_at(run: Run) -> float | None:
+    good = np.isfinite(run.delta).all(axis=1)
+    return None if good.all() else float(run.t[np.flatnonzero(~good)[0]])
+
+
+def status_words(run: Run) -> list[str]:
+    """Return the run's status flags as words, without the one that says all is well."""
+    return [plain(str(flag)) for flag in run.status if str(flag).lower() not in ("", "ok", "done")]

@@ -1,0 +1,105 @@
+"""Results of a run on disk: ``trajectory.nc``, ``summary.json``, ``trajectory.csv``."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from nullmotion.scenario import dataset
+from nullmotion.scenario.files import replacing
+from nullmotion.scenario.scenario import Scenario
+from nullmotion.sim.trajectory import Trajectory
+
+TRAJECTORY, SUMMARY, TABLE, REPORT = "trajectory.nc", "summary.json", "trajectory.csv", "report.html"
+
+
+def write(
+    trajectory: Trajectory,
+    scenario: Scenario,
+    directory: str | Path,
+    *,
+    csv: bool = False,
+    law_file: str = "",
+    report: Callable[[Path], Any] | None = None,
+) -> Path:
+    """Write a run's files into a folder, all of them or none; other files there stay.
+
+    Args:
+        trajectory: The run.
+        scenario: What was flown.
+        directory: Folder, made if need be.
+        csv: Whether ``trajectory.csv`` is written too.
+        law_file: Text of the Python file that the law came from.
+        report: Writes ``report.html`` to the path it is given.
+    """
+    target = Path(directory)
+    owned = (TRAJECTORY, SUMMARY, TABLE, REPORT) if (target / TRAJECTORY).is_file() else ()
+    with replacing(target, owned) as new:
+        write_netcdf(trajectory, new / TRAJECTORY, dataset.attributes(trajectory, scenario, law_file))
+        (new / SUMMARY).write_text(json.dumps(summary(trajectory, scenario), indent=2) + "\n", encoding="utf-8")
+        if csv:
+            write_csv(trajectory, new / TABLE)
+        if report:
+            report(new / REPORT)
+    return target
+
+
+def summary(trajectory: Trajectory, scenario: Scenario) -> dict[str, Any]:
+    """Return what ``summary.json`` holds; what is not finite is null."""
+    found = {"scenario": scenario.name, "title": scenario.title, **trajectory.summary()}
+    found["parameters"] = dataset.resolved(trajectory, scenario)["law"]
+    found["seed"] = scenario.plant.seed if scenario.plant else None
+    result: dict[str, Any] = dataset.plain(found | {"versions": dataset.versions()})
+    return result
+
+
+def write_netcdf(trajectory: Trajectory, path: Path, attributes: dict[str, str]) -> None:
+    """Write a run as NetCDF-4."""
+    import netCDF4  # alone it imports four times as fast as through xarray
+
+    with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
+        file.setncatts(attributes)
+        for variable in dataset.variables(trajectory):
+            for name, size in zip(variable.dims, variable.values.shape, strict=True):
+                if name not in file.dimensions:
+                    file.createDimension(name, size)
+            stored = file.createVariable(variable.name, "f8", variable.dims, zlib=variable.values.size > 1000, complevel=1)
+            stored.setncatts({"units": variable.units, "long_name": variable.long_name})
+            stored[...] = variable.values
+
+
+def write_csv(trajectory: Trajectory, path: Path) -> None:
+    """Write the histories as a table, one row a step, units in the column names."""
+    columns: dict[str, np.ndarray] = {}
+    for variable in dataset.variables(trajectory):
+        if variable.dims[0] != "time":
+            continue
+        unit = {"1": "", "s": "_s", "rad": "_rad", "rad s-1": "_rad_s", "N m": "_Nm", "N m s": "_Nms"}[variable.units]
+        if variable.values.ndim == 1:
+            columns["t_s" if variable.name == "time" else variable.name + unit] = variable.values
+            continue
+        labels = _axis_labels(trajectory) if variable.dims[1] == "torque_axis" else range(variable.values.shape[1])
+        for label, column in zip(labels, variable.values.T, strict=True):
+            columns[f"{variable.name}_{label}{unit}"] = column
+    table = np.stack(list(columns.values()), axis=1)
+    np.savetxt(path, table, fmt="%.17g", delimiter=",", header=",".join(columns), comments="")
+
+
+def _axis_labels(trajectory: Trajectory) -> list[str]:
+    basis = np.asarray(trajectory.setup.array.torque_axes)
+    body = [int(np.argmax(row)) for row in basis]
+    exact = np.array_equal(basis, np.eye(3)[body])
+    return ["xyz"[i] for i in body] if exact else [f"e{i + 1}" for i in range(len(basis))]
+
+
+def to_xarray(trajectory: Trajectory, scenario: Scenario | None = None) -> Any:
+    """Return a run as an `xarray.Dataset` with units and conventions."""
+    import xarray
+
+    found = dataset.variables(trajectory)
+    data = {v.name: (v.dims, v.values, {"units": v.units, "long_name": v.long_name}) for v in found}
+    return xarray.Dataset(data, attrs=dataset.attributes(trajectory, scenario)).set_coords(["torque_axes"])
