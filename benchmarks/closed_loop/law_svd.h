@@ -176,7 +176,7 @@ INLINE void law_svd(const State x[TILE], vd rate[TILE][4]) {
         orthogonalise(f, 0, 2);
         orthogonalise(f, 1, 2);
     }
-    FINISH apply_svd(&x[j], &f[j], rate[j]);
+    EACH apply_svd(&x[j], &f[j], rate[j]);
 }
 
 #endif

@@ -12,7 +12,6 @@ from nullmotion import ops
 Matrix = Any
 
 _SWEEPS = {1: 0, 2: 2, 3: 4}  # one-sided Jacobi on m x m: to the last bit (design/svd_sweeps.py)
-_ROW_SWEEPS = {1: 0, 2: 2, 3: 5}  # one more: the rows of A come unprepared
 _ORTHOGONAL = 1e-28  # squared cosine of two rows below which their product is rounding
 _TINY = 1e-300
 _RANK = 4e-16  # a second singular value below this share of the first is rounding
@@ -143,11 +142,9 @@ def rows(a: Matrix) -> Rows:
     alone, so that what is zero by symmetry stays exactly zero, with and without fused
     multiply-adds; and no singular vector is asked for that rounding alone would choose.
     """
-    m = a.shape[0]
-    both = np.concatenate([a, np.eye(m)], axis=1)
-    parts = [both[j] for j in range(m)]
-    n = a.shape[1]
-    for _ in range(_ROW_SWEEPS[m]):
+    m, n = a.shape
+    parts = list(np.concatenate([a, np.eye(m)], axis=1))
+    for _ in range(_SWEEPS[m]):
         for p, q in combinations(range(m), 2):
             parts[p], parts[q] = _rotated(parts[p], parts[q], n)
     size = [x[:n] @ x[:n] for x in parts]

@@ -199,7 +199,7 @@ def _polished(spin: np.ndarray, torque: np.ndarray, u: np.ndarray) -> np.ndarray
         better = trial_cost < cost
         u, cost = np.where(better[..., None], trial, u), np.where(better, trial_cost, cost)
         damping = np.where(better, damping * 0.1, damping * 8.0)
-        if np.abs(step).max() < _SETTLED:
+        if np.abs(step).max(initial=0.0) < _SETTLED:
             break
     return u
 

@@ -51,7 +51,8 @@ def test_measures_against_lapack(name: str) -> None:
         assert found["sqrt_det_AAT"][i] == pytest.approx(np.sqrt(np.linalg.det(a @ a.T)), rel=1e-6)
         assert found["sigma_min"][i] == pytest.approx(sigma[-1], abs=1e-14)
         assert found["condition_number"][i] == pytest.approx(np.linalg.cond(a), rel=1e-9)
-        assert found["distance_to_singularity"][i] == pytest.approx(nearest(array, d).distance)
+    alone = [nearest(array, d).distance for d in delta[:5]]
+    assert np.allclose(found["distance_to_singularity"][:5], alone, rtol=1e-9)
 
 
 def test_measures_have_deltas_leading_axes() -> None:
@@ -82,11 +83,7 @@ def test_the_nearest_configuration_is_singular_and_as_far_as_it_says(name: str) 
 def test_no_other_search_finds_a_nearer_one(name: str) -> None:
     array, delta = angles(name, 3, seed=2)
     for d in delta:
-        found = nearest(array, d).distance
-        other = searched(array, d, starts=12)
-        assert found <= other + 1e-9
-        if name != "box90":  # there the nearest often lies on a gimbal axis, which no search hits
-            assert found >= other - 1e-3 or other > found  # a better one must be real: see above
+        assert nearest(array, d).distance <= searched(array, d, starts=6) + 1e-9
 
 
 def test_triangle_lines_lie_along_111() -> None:
@@ -145,14 +142,13 @@ def test_every_singular_configuration_has_distance_0() -> None:
         assert measures(array, delta)["distance_to_singularity"].max() < 1e-7
 
 
-def test_box90_with_a_plane_in_line_is_singular_along_the_other_planes_normal() -> None:
-    """u on a gimbal axis: the CMGs of that plane are free, only the others count."""
-    delta = np.array([0.4, 1.5, 0.05, 0.1])
+def test_box90_on_a_gimbal_axis() -> None:
+    """Plane 2 in line along x: no torque along z, whatever plane 1 does (its CMGs are free)."""
+    delta = np.array([0.4, 1.5, np.pi / 2 - 0.05, -np.pi / 2 + 0.1])
     found = nearest(nm.layouts.box90(), delta)
-    assert np.allclose(np.abs(found.u), [0, 0, 1], atol=1e-12) and found.delta_s[0] == delta[0]
-    expected = np.hypot(*wrapped(delta[2:] - np.pi / 2))
-    along_y = np.hypot(*wrapped(delta[:2] - np.pi / 2))
-    assert found.distance <= min(expected, along_y) + 1e-12
+    assert np.allclose(np.abs(found.u), [0, 0, 1], atol=1e-12)
+    assert np.allclose(found.delta_s, [0.4, 1.5, np.pi / 2, -np.pi / 2], atol=1e-12)
+    assert found.distance == pytest.approx(np.hypot(0.05, 0.1), abs=1e-12)
 
 
 def test_turning_the_body_changes_nothing() -> None:

@@ -21,14 +21,14 @@ from nullmotion.array.model import CmgArray
 
 
 def rotor_directions(array: CmgArray, delta: Any) -> Any:
-    """Return the unit vectors of the rotors' momenta in B, (n, 3)."""
-    c, s = ops.cos(delta)[:, None], ops.sin(delta)[:, None]
+    """Return the unit vectors of the rotors' momenta in B, (..., n, 3)."""
+    c, s = ops.cos(delta)[..., None], ops.sin(delta)[..., None]
     return c * array.spin_axes + s * array.transverse_axes
 
 
 def command_direction(array: CmgArray, hdot: Any) -> Any:
-    """Return the unit vector of hdot in B, zero when nothing is commanded, (3,)."""
-    size = linalg.norm(hdot)
+    """Return the unit vector of hdot in B, zero when nothing is commanded, (..., 3)."""
+    size = ops.sqrt((hdot * hdot).sum(axis=-1, keepdims=True))
     return (hdot / ops.where(ops.less(0.0, size), size, 1.0)) @ array.torque_axes
 
 
@@ -42,11 +42,11 @@ def eram(array: CmgArray, delta: Any, hdot: Any) -> Any:
 
     Args:
         array: The array.
-        delta: Gimbal angles [rad], (n,).
-        hdot: Commanded rate of momentum [N m], (m,); 1/2 for each CMG when it is zero.
+        delta: Gimbal angles [rad], (..., n).
+        hdot: Commanded rate of momentum [N m], (..., m); 1/2 for each CMG when it is zero.
 
     Returns:
-        eram_i in [0, 1], (n,); 0 for a CMG without momentum. Mao 2019, Eq 28.
+        eram_i in [0, 1], (..., n); 0 for a CMG without momentum. Mao 2019, Eq 28.
     """
     e = command_direction(array, hdot)
     theta = _angles(rotor_directions(array, delta), e)
@@ -58,7 +58,7 @@ def eram(array: CmgArray, delta: Any, hdot: Any) -> Any:
 
 def rrss(array: CmgArray, delta: Any, hdot: Any) -> Any:
     """Return the sum of `eram` over the CMGs (Mao 2019, Sec. IV-B)."""
-    return sum(eram(array, delta, hdot))
+    return eram(array, delta, hdot).sum(axis=-1)
 
 
 def sse(array: CmgArray, delta: Any, hdot: Any, sigma_min: Any) -> Any:
@@ -75,6 +75,25 @@ def sse(array: CmgArray, delta: Any, hdot: Any, sigma_min: Any) -> Any:
 
 def _angles(vectors: Any, e: Any) -> Any:
     """Return the angle of each unit vector to e; pi/2 when e is zero."""
-    along = vectors @ e
-    across = vectors - along[:, None] * e
-    return ops.atan2(ops.sqrt((across * across).sum(axis=1)), along)
+    e = e[..., None, :]
+    along = (vectors * e).sum(axis=-1)
+    across = vectors - along[..., None] * e
+    return ops.atan2(ops.sqrt((across * across).sum(axis=-1)), along)
+
+
+def describe(sse_value: float, epsilon: float = 0.2, epsilon1: float = 0.8) -> str:
+    """Return the state of the momentum in words (Mao 2019, Eq 29)."""
+    if sse_value < epsilon:
+        return "exhausted"
+    return "sufficient" if sse_value > epsilon1 else "in the middle"
+
+
+def desaturation_due(
+    sse_values: np.ndarray, sigma_min: np.ndarray, epsilon: float = 0.2, epsilon1: float = 0.8, sigma_c: float = 0.1
+) -> np.ndarray:
+    """Return where Mao 2019, Eq 39, calls for desaturation: a branch that the paper leaves blank.
+
+    True where momentum is exhausted (sse < epsilon), or the array is near singular
+    (sigma_min < sigma_c) with too little left to be worth an escape (sse < epsilon1).
+    """
+    return (sse_values < epsilon) | ((sigma_min < sigma_c) & (sse_values < epsilon1))

@@ -27,9 +27,10 @@ def map_source(program: Program, width: int) -> str:
     for v in range(len(program.inputs)):
         lines += load(shape, "%in", f"{v}", "%stride", "%l", f"%in{v}")
         names.append(f"%in{v}")
-    code, outputs, guards = llvm.body(program, names, shape, "v")
-    lines += [f"  {line}" for line in code]
-    for j, (_, condition) in enumerate(guards.items()):
+    code = llvm.body(program, names, shape, "v")
+    lines += [f"  {line}" for line in code.lines]
+    outputs = code.outputs
+    for j, condition in enumerate(code.guards.values()):
         zero, one = shape.constant(0.0), shape.constant(1.0)
         lines.append(f"  %guard{j} = select {shape.boolean} {condition}, {shape.real} {zero}, {shape.real} {one}")
         outputs.append(f"%guard{j}")
@@ -69,8 +70,9 @@ def call_source(program: Program, carried: int) -> str:
     lines = ["define void @call(ptr %io) #0 {"]
     for v in range(count):
         lines += load(shape, "%io", f"{v}", "1", "0", f"%in{v}")
-    code, outputs, guards = llvm.body(program, [f"%in{v}" for v in range(count)], shape, "v")
-    lines += [f"  {line}" for line in code]
+    code = llvm.body(program, [f"%in{v}" for v in range(count)], shape, "v")
+    lines += [f"  {line}" for line in code.lines]
+    outputs, guards = code.outputs, code.guards
     for j, condition in enumerate(guards.values()):
         zero, one = shape.constant(0.0), shape.constant(1.0)
         lines.append(f"  %guard{j} = select {shape.boolean} {condition}, {shape.real} {zero}, {shape.real} {one}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import re
 import struct
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -110,18 +110,53 @@ class Shape:
 _PLACEHOLDER = re.compile(r"\{(bits|real|mask):([^}]+)\}")
 
 
-def body(program: Program, inputs: Sequence[str], shape: Shape, prefix: str) -> tuple[list[str], list[str], dict[str, str]]:
-    """Return the IR lines of a program, the names of its outputs and of its guards."""
+@dataclass
+class Body:
+    """A program written as IR.
+
+    Attributes:
+        lines: Instructions, in order.
+        early: Those among them that depend on early inputs alone; to be placed ahead.
+        outputs: Name of each output.
+        guards: Name of each flag's condition.
+    """
+
+    lines: list[str]
+    early: list[str]
+    outputs: list[str]
+    guards: dict[str, str]
+
+
+def body(
+    program: Program, inputs: Sequence[str], shape: Shape, prefix: str, early: Collection[int] = ()
+) -> Body:
+    """Write a program as IR.
+
+    Args:
+        program: What to write.
+        inputs: Name of each input.
+        shape: Vector types.
+        prefix: Begins the name of every value.
+        early: Positions of inputs that are known before a loop; what follows from them alone
+            is written apart, to be computed once.
+    """
     names: dict[int, str] = dict(zip(program.inputs, inputs, strict=True))
+    ahead = {program.inputs[i] for i in early}
     lines: list[str] = []
+    before: list[str] = []
     for i, node in enumerate(program.nodes):
         if node.op == "constant":
             names[i] = shape.constant(node.value)  # type: ignore[arg-type]
+            if early:
+                ahead.add(i)
         elif node.op != "input":
             names[i] = f"%{prefix}{i}"
-            lines.extend(_instruction(program, i, names, shape, prefix))
+            known = bool(early) and all(a in ahead for a in node.args)
+            if known:
+                ahead.add(i)
+            (before if known else lines).extend(_instruction(program, i, names, shape, prefix))
     guards = {flag: names[g] for flag, g in program.guards.items()}
-    return lines, [names[o] for o in program.outputs], guards
+    return Body(lines, before, [names[o] for o in program.outputs], guards)
 
 
 def _instruction(program: Program, i: int, names: dict[int, str], shape: Shape, prefix: str) -> list[str]:

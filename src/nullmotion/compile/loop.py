@@ -232,6 +232,7 @@ class _Writer:
         self.states = len(traced.live)
         self.parameters = sum(loop.varying)
         self.lines: list[str] = []
+        self.ahead: list[str] = []  # what follows from the parameters alone: once, before the loop
         self.carried = self.states + len(traced.flags)
 
     def source(self) -> str:
@@ -243,7 +244,9 @@ class _Writer:
         for j in range(self.parameters):
             self.lines += load(self.shape, "%parameters", str(j), "%total", "%lo", f"%p{j}")
         self._begin()
+        entry = len(self.lines) - 1
         current = self._steps()
+        self.lines[entry:entry] = self.ahead
         self._end(current)
         self.lines.append("}")
         return "\n".join([*llvm.declarations(self.shape), *self._reductions(), *self.lines, llvm.ATTRIBUTES])
@@ -252,11 +255,12 @@ class _Writer:
         return [f"declare i1 @llvm.vector.reduce.or.v{self.shape.width}i1({self.shape.boolean})"]
 
     def _body(
-        self, program: Program, inputs: Sequence[str], prefix: str
+        self, program: Program, inputs: Sequence[str], prefix: str, early: Sequence[int] = ()
     ) -> tuple[list[str], dict[str, str]]:
-        code, outputs, guards = llvm.body(program, inputs, self.shape, prefix)
-        self.lines += [f"  {line}" for line in code]
-        return outputs, guards
+        code = llvm.body(program, inputs, self.shape, prefix, early)
+        self.lines += [f"  {line}" for line in code.lines]
+        self.ahead += [f"  {line}" for line in code.early]
+        return code.outputs, code.guards
 
     def _raise(self, flags: Sequence[str], guards: dict[str, str], prefix: str) -> list[str]:
         """Return the flag values after guards of one piece."""
@@ -343,7 +347,8 @@ class _Writer:
                 f"  br i1 %due{index}, label %do{index}, label %join{index}",
                 f"do{index}:",
             ]
-        results, guards = self._body(program, inputs, f"g{index}_")
+        fixed = range(self.states, self.states + self.parameters)
+        results, guards = self._body(program, inputs, f"g{index}_", fixed)
         flags = self._raise(current[self.states :], guards, f"g{index}_")
         self._history(index, results[self.states :], base)
         after = [*results[: self.states], *flags]

@@ -9,6 +9,8 @@ from nullmotion import linalg, ops
 from nullmotion.array.momentum_state import command_direction
 from nullmotion.metrics.base import Metric, Reduction, Sample
 
+_ALONG_AXIS = 1e-12  # sine of the angle between command and gimbal axis; below it is rounding
+
 
 @dataclass(frozen=True)
 class MomentumReserve(Metric):
@@ -31,6 +33,7 @@ class MomentumReserve(Metric):
         e = command_direction(array, sample.hdot)
         p = e - (array.gimbal_axes @ e)[:, None] * array.gimbal_axes
         length = ops.sqrt((p * p).sum(axis=1))
-        scale = array.h0 / ops.where(ops.less(0.0, length), length, 1.0)
-        saturated = array.torque_axes @ (scale @ p + array.momentum_bias)
+        turned = ops.less(_ALONG_AXIS, length)
+        share = ops.where(turned, array.h0 / ops.where(turned, length, 1.0), 0.0)
+        saturated = array.torque_axes @ (share @ p + array.momentum_bias)
         return linalg.norm(saturated) - linalg.norm(sample.momentum)

@@ -49,11 +49,11 @@ def _columns(curves: int) -> int:
 def _name(axes: Any, value: float, label: str) -> None:
     axes.annotate(
         label,
-        xy=(1.0, value),
+        xy=(0.0, value),
         xycoords=("axes fraction", "data"),
-        xytext=(-2, 2),
+        xytext=(3, 2),
         textcoords="offset points",
-        ha="right",
+        ha="left",
         va="bottom",
         fontsize=6.5,
         color=palette.QUIET,

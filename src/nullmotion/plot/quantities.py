@@ -7,6 +7,8 @@ import numpy as np
 from nullmotion.plot.view import Run
 
 STUCK_FRACTION = 0.02  # of the command; an escaping law gives at least some of it
+STUCK_SHARE = 0.1  # of the whole command: shorter pauses at the end are not called stuck
+USED_UP = 0.2  # momentum state (Mao 2019, Sec. VI: epsilon)
 _BODY_AXES = np.eye(3)
 
 
@@ -56,19 +58,25 @@ def torque_fractions(run: Run) -> tuple[np.ndarray, np.ndarray]:
 
 
 def stuck_since(run: Run) -> float | None:
-    """Return the time [s] from which a run gives no torque until its end though asked; or None.
+    """Return the time [s] from which a run gains no momentum until its end though asked; or None.
 
-    Less than 2 % of the command along its direction, for at least a tenth of the run.
+    Stuck is a run that, over at least the last tenth of what was asked of it, gains less
+    than 2 % of it. Momentum tells, not torque: a law that chatters gives torque to and fro.
     """
-    along, _ = torque_fractions(run)
-    known = np.flatnonzero(np.isfinite(along))
-    if len(known) < 10:
-        return None
-    giving = known[np.abs(along[known]) >= STUCK_FRACTION]
-    first = known[0] if not len(giving) else giving[-1] + 1
-    if first > known[-1] or run.t[known[-1]] - run.t[first] < 0.1 * (run.t[-1] - run.t[0]):
-        return None
-    return float(run.t[first])
+    _, unit = directions(run)
+    span = np.diff(run.t)
+    asked = np.concatenate([[0.0], np.cumsum(np.linalg.norm(run.hdot[:-1], axis=1) * span)])
+    steps = np.sum(np.diff(run.momentum, axis=0) * np.nan_to_num(unit[:-1]), axis=1)
+    gained = np.concatenate([[0.0], np.cumsum(steps)])
+    away = np.abs(gained - gained[-1]) > STUCK_FRACTION * STUCK_SHARE * asked[-1]
+    first = int(np.flatnonzero(away)[-1]) + 1 if away.any() else 0
+    return float(run.t[first]) if asked[-1] - asked[first] > STUCK_SHARE * asked[-1] else None
+
+
+def saturated(run: Run) -> bool:
+    """Return whether the momentum along the command is used up at the end."""
+    state = run.measures.get("momentum_state")
+    return state is not None and bool(state[-1] < USED_UP)
 
 
 def rate_limits(run: Run) -> list[float]:

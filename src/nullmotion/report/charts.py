@@ -136,7 +136,7 @@ def _level_line(value: float) -> dict[str, Any]:
 
 def _level_name(value: float, label: str) -> dict[str, Any]:
     return {
-        "xref": "paper", "x": 1, "xanchor": "right", "y": value, "yanchor": "bottom",
+        "xref": "paper", "x": 0.005, "xanchor": "left", "y": value, "yanchor": "bottom",
         "text": escape(label), "showarrow": False, "font": {"size": 11, "color": palette.QUIET},
         "bgcolor": "rgba(255,255,255,0.75)", "borderpad": 1,
     }

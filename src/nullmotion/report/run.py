@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
 from nullmotion.plot.panels import run_panels
 from nullmotion.plot.view import Run
 from nullmotion.report import page
@@ -34,7 +36,7 @@ def run_report(trajectory: Run, path: str | Path, title: str, scenario_text: str
         headline(trajectory, title),
         page.section("Key numbers", row(run_tiles(trajectory)), id="numbers"),
         page.section("Over time", page.toolbar(), grid(drawn), thinning(charts), id="charts-section"),
-        page.section("Metrics", metric_table(trajectory.metrics), id="metrics"),
+        page.section("Metrics", tag("div", metric_table(trajectory.metrics), class_="metrics"), id="metrics"),
     ]
     if scenario_text:
         parts.append(page.section("Scenario", page.details("Scenario file", scenario_text), id="scenario"))
@@ -44,18 +46,27 @@ def run_report(trajectory: Run, path: str | Path, title: str, scenario_text: str
 def headline(run: Run, title: str) -> Markup:
     """Return the first lines: title, verdict, what ran."""
     said = verdict(run)
-    array, law = run.setup.array, run.setup.law
-    subject = (
-        f"Law {law.name} on {array.label}, {array.n} CMGs of {number(array.mean_momentum)} N m s in the mean"
-    )
     flags = [tag("li", flag) for flag in status_words(run)]
     return tag(
         "header",
         tag("p", title, class_="title"),
         tag("h1", said.words, class_=f"verdict {said.tone}"),
-        tag("p", subject, class_="subject"),
+        tag("p", subject(run), class_="subject"),
         tag("ul", join(*flags), class_="flags", aria_label="Status") if flags else "",
     )
+
+
+def subject(run: Run) -> str:
+    """Return what ran: law, array, command."""
+    array, law = run.setup.array, run.setup.law
+    long = getattr(law, "full_name", "")
+    name = f"{long} ({law.name})" if long and long.lower() != law.name.lower() else law.name
+    same = np.ptp(array.h0) == 0
+    size = f"{number(array.mean_momentum)} N m s {'each' if same else 'in the mean'}"
+    asked = "a command that changes over time"
+    if np.ptp(run.hdot, axis=0).max() == 0:
+        asked = f"({', '.join(number(v) for v in run.hdot[0])}) N m"
+    return f"{name} on {array.label}, {array.n} CMGs of {size}; asked for {asked}"
 
 
 def thinning(charts: Charts) -> Markup:

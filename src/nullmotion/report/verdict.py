@@ -6,7 +6,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from nullmotion.plot.quantities import stuck_since
+from nullmotion.plot.quantities import saturated, stuck_since
 from nullmotion.plot.view import Run
 from nullmotion.report.wording import number, plain
 
@@ -31,6 +31,8 @@ def verdict(run: Run) -> Verdict:
     if broken is not None:
         return Verdict(f"Failed: not a number from {number(broken)} s on", "trouble")
     stuck = stuck_since(run)
+    if stuck is not None and saturated(run):
+        return Verdict(f"Saturated: momentum used up, no torque from {number(stuck)} s on", "stopped")
     if stuck is not None:
         return Verdict(f"Stuck: delivers no torque from {number(stuck)} s on", "trouble")
     if run.stopped_at_s is not None:

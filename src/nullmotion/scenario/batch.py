@@ -28,15 +28,15 @@ def run(scenario: Scenario, values: Mapping[str, Any], metrics: tuple[str, ...] 
     if not columns:
         return _simulated(base, None, delta, hdot, options)
     setups = _setups(scenario, columns, count, metrics)
-    groups = _groups(setups)
-    if len(groups) > 1 and options.get("history"):
+    together = groups(setups)
+    if len(together) > 1 and options.get("history"):
         raise InputError("history", options["history"], "0 when the runs differ in more than numbers")
     parts = []
-    for rows in groups:
+    for rows in together:
         picked = [setups[i] for i in rows]
         part = (None if x is None else x[rows] for x in (delta, hdot))
         parts.append(_simulated(picked[0], picked, *part, options))
-    return merge.merged(parts, groups)
+    return merge.merged(parts, together)
 
 
 def dotted_key(scenario: Scenario, key: str) -> str:
@@ -48,8 +48,8 @@ def dotted_key(scenario: Scenario, key: str) -> str:
     if len(found) == 1:
         return found[0]
     if found:
-        raise InputError(key, "...", f"one section; it stands in several: {', '.join(found)}")
-    raise InputError(key, "...", keys.hint(key, [name for names in known.values() for name in names]))
+        raise InputError(key, "(given)", f"one section; it stands in several: {', '.join(found)}")
+    raise InputError(key, "(given)", keys.hint(key, [name for names in known.values() for name in names]))
 
 
 def _count(columns: Mapping[str, Any]) -> int:
@@ -112,7 +112,7 @@ def _plain(value: Any) -> Any:
     return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
 
 
-def _groups(setups: Sequence[Setup]) -> list[np.ndarray]:
+def groups(setups: Sequence[Setup]) -> list[np.ndarray]:
     """Return the runs that one kernel can do together."""
     known: dict[int, Any] = {}
     rows: dict[Any, list[int]] = {}

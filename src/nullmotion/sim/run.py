@@ -20,6 +20,7 @@ Backend = Literal["auto", "kernel", "python"]
 Progress = Callable[[float], None]
 
 _SLICE = 200_000  # steps between two looks at progress and Ctrl-C
+_SHORT = 20_000  # runs below this finish sooner with quickly made code
 
 
 def run(setup: Setup, *, backend: Backend = "auto", decimate: int = 1, progress: Progress | None = None) -> Trajectory:
@@ -76,7 +77,7 @@ def check_history(setup: Setup, runs: int, decimate: int) -> None:
 
 
 def _run_kernel(setup: Setup, what: Loop, decimate: int, progress: Progress | None) -> Trajectory:
-    kernel = LoopKernel(what, recording=True, width=1)
+    kernel = LoopKernel(what, recording=True, width=1, level=0 if setup.steps < _SHORT else 2)
     total = setup.steps + 1
     state = np.zeros((kernel.carried, 1))
     out = np.zeros((kernel.outputs + len(kernel.flags), 1))
@@ -133,7 +134,7 @@ def assemble(
         momentum_wanted=cut.wanted,
         impulse=cut.impulse,
         metrics=totals(setup, outcome.sums, taken),
-        stopped_at_s=taken * setup.dt if stopped else None,
+        stopped_at_s=round(taken * setup.dt, 12) if stopped else None,
         stop_reason=setup.stop[code - 1].reason if stopped else "end of run",
         status=status(setup, outcome, flags),
         backend=backend,

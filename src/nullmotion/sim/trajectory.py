@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from nullmotion.array import momentum_state
 from nullmotion.sim.setup import Setup
 
 
@@ -65,29 +66,28 @@ class Trajectory:
     @cached_property
     def measures(self) -> dict[str, np.ndarray]:
         """Singularity measures and momentum state along the run, each (N+1,)."""
-        from nullmotion.array import momentum_state
-
         array = self.setup.true_array
         s = np.linalg.svd(self._jacobians / array.mean_momentum, compute_uv=False)
         s = np.pad(s, ((0, 0), (0, array.m - s.shape[1])))
-        eram = self.eram
         return {
             "sigma_min": s[:, -1],
             "sqrt_det_AAT": np.prod(s, axis=1),
             "condition_number": s[:, 0] / np.maximum(s[:, -1], 1e-16),
-            "residual_momentum": eram.sum(axis=1),
-            "momentum_state": np.array(
-                [momentum_state.sse(array, d, h, g) for d, h, g in zip(self.delta, self.hdot, s[:, -1], strict=True)]
-            ),
+            "residual_momentum": self.eram.sum(axis=1),
+            "momentum_state": self.eram.sum(axis=1) + s[:, -1],
         }
 
     @cached_property
     def eram(self) -> np.ndarray:
         """Effective residual angular momentum of each CMG (Mao 2019, Eq 28), (N+1, n)."""
-        from nullmotion.array import momentum_state
+        return np.asarray(momentum_state.eram(self.setup.true_array, self.delta, self.hdot))
 
-        array = self.setup.true_array
-        return np.array([momentum_state.eram(array, d, h) for d, h in zip(self.delta, self.hdot, strict=True)])
+    @cached_property
+    def desaturation_due_at_s(self) -> float | None:
+        """When Mao 2019, Eq 39, first calls for desaturation [s]; None if it never does."""
+        given = {k: getattr(self.setup.law, k) for k in ("epsilon", "epsilon1", "sigma_c") if hasattr(self.setup.law, k)}
+        due = momentum_state.desaturation_due(self.measures["momentum_state"], self.measures["sigma_min"], **given)
+        return float(self.t[np.argmax(due)]) if due.any() else None
 
     def summary(self) -> dict[str, Any]:
         """Return the numbers of the run, as ``summary.json`` holds them."""
@@ -99,6 +99,8 @@ class Trajectory:
             "steps": len(self.t) - 1,
             "final_momentum": self.momentum[-1].tolist(),
             "final_gimbal_deg": np.degrees(self.delta[-1]).tolist(),
+            "momentum_state": momentum_state.describe(self.measures["momentum_state"][-1]),
+            "desaturation_due_at_s": self.desaturation_due_at_s,
             **{key: float(value) for key, value in self.metrics.items()},
             "status": list(self.status) or ["ok"],
             "backend": self.backend,

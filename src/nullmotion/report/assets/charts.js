@@ -110,14 +110,27 @@
     return written.replace("-", "−");
   };
 
+  // Rates act from their row on, so the last row has none: there the one before still holds.
+  function reading(x, y, t, size) {
+    let i = nearest(x, t);
+    if (i < 0) return "–";
+    if (i === y.length - 1 && i > 0 && !Number.isFinite(y[i])) i -= 1;
+    return tidy(Math.abs(y[i]) < 1e-6 * size ? 0 : y[i]);
+  }
+
+  function scale(chart) {
+    chart.scale ??= chart.figure.traces.reduce((most, trace) =>
+      array(trace.y).reduce((m, v) => (Number.isFinite(v) ? Math.max(m, Math.abs(v)) : m), most), 0);
+    return chart.scale;
+  }
+
   function place(chart, t) {
     const [from, to] = range(chart);
     const at = (t - from) / (to - from);
     chart.cursor.hidden = !(at >= 0 && at <= 1);
     chart.cursor.style.left = `${LEFT + at * width(chart)}px`;
     for (const { trace, value } of chart.readouts) {
-      const i = nearest(array(trace.x), t);
-      value.textContent = i < 0 ? "–" : tidy(array(trace.y)[i]);
+      value.textContent = reading(array(trace.x), array(trace.y), t, scale(chart));
     }
   }
 
