@@ -312,8 +312,8 @@ class _Writer:
     def _splat(self, scalar: str, name: str) -> list[str]:
         v, w = self.shape.real, self.shape.width
         return [
-            f"  {name}.i = insertelement {v} poison, double {scalar}, i32 0",
-            f"  {name} = shufflevector {v} {name}.i, {v} poison, <{w} x i32> zeroinitializer",
+            f"  {name}.e = insertelement {v} poison, double {scalar}, i32 0",
+            f"  {name} = shufflevector {v} {name}.e, {v} poison, <{w} x i32> zeroinitializer",
         ]
 
     def _row(self) -> list[str]:

@@ -131,9 +131,10 @@ def _fuse(nodes: list[Node], live: set[int], roots: set[int]) -> None:
         for a in nodes[i].args:
             users.setdefault(a, []).append(i)
     sums = {"add", "sub"}
+    was = [node.op for node in nodes]  # a user fused before still needs no product
 
     def fusible(i: int) -> bool:
-        return nodes[i].op == "mul" and i not in roots and all(nodes[u].op in sums for u in users[i])
+        return was[i] == "mul" and i not in roots and all(was[u] in sums for u in users[i])
 
     negated: dict[int, int] = {}
 

@@ -119,7 +119,7 @@ def loop(setup: Setup, varying: tuple[bool, ...] | None = None) -> Loop:
         row_period=period,
         active=(lambda s: ops.equal(s.stop, 0.0)) if setup.stop else None,
         record=lambda s: Record(s.delta, s.rates, s.asked, s.hdot, s.impulse, s.wanted),
-        recorded_after=4,
+        recorded_after=5,
     )
 
 
