@@ -1,8 +1,7 @@
 /* sin, cos, exp, 1/sqrt and 1/x on vectors, about one unit in the last place.
  *
- * The coefficients come from minimax.py. Reduction by pi/2 in two fused steps: x - k P1 is exact
- * (Sterbenz-like: P1 has all 53 bits and the product is not rounded), so a third part would change
- * nothing for |x| <= 1e5.
+ * The coefficients come from minimax.py. pi/2 in three parts of 53 bits: x - k P1 is exact (the
+ * product is not rounded), and the third part matters for doubles next to a multiple of pi/2.
  */
 #ifndef ELEMENTARY_H
 #define ELEMENTARY_H
@@ -17,6 +16,7 @@ INLINE void v_sincos(vd x, vd *sin_x, vd *cos_x) {
     vi k_bits = v_bits(shifted);
     vd k = shifted - v_set(ROUND_MAGIC);
     vd r = v_fnma(k, v_set(0x1.1a62633145c07p-54), v_fnma(k, v_set(0x1.921fb54442d18p+0), x));
+    r = v_fnma(k, v_set(-0x1.f1976b7ed8fbcp-110), r);
     vd z = r * r;
     vd s = v_fma(z, v_set(0x1.5e0b05bff20f2p-33), v_set(-0x1.ae600aca92c64p-26));
     vd c = v_fma(z, v_set(-0x1.907d8f29fe831p-37), v_set(0x1.1eeb68cd22f56p-29));

@@ -1,4 +1,4 @@
-/* The time step: rates held, RK4 on attitude and body rate, TILE vectors at a time. */
+/* The time step: quaternion feedback, the law, rates held, RK4 on attitude and body rate. */
 #ifndef STEP_H
 #define STEP_H
 

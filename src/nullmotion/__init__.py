@@ -19,6 +19,12 @@ _WHERE = {
     "Observation": "nullmotion.law",
     "prepare": "nullmotion.prepared",
     "PreparedLaw": "nullmotion.prepared",
+    "load_scenario": "nullmotion.scenario.load",
+    "simulate": "nullmotion.scenario.simulate",
+    "simulate_batch": "nullmotion.scenario.simulate",
+    "Scenario": "nullmotion.scenario.scenario",
+    "Trajectory": "nullmotion.sim.trajectory",
+    "BatchResult": "nullmotion.sim.batch",
     "NullmotionError": "nullmotion.errors",
     "InputError": "nullmotion.errors",
 }

@@ -68,7 +68,7 @@ def det(m: Matrix) -> Any:
 def solve(m: Matrix, b: Matrix) -> Matrix:
     """Return M^-1 b through the adjugate; for the well-conditioned M of damped laws."""
     adj = adjugate(m)
-    return (adj @ b) / (m[0] @ adj[:, 0])
+    return (adj @ b) * (1.0 / (m[0] @ adj[:, 0]))
 
 
 def minors_null_vector(a: Matrix) -> Matrix:
@@ -228,7 +228,7 @@ def _left_basis(w: Matrix, s: Matrix) -> Matrix:
     """Return orthonormal columns along w, completed where a singular value vanishes."""
     m = w.shape[0]
     present = ops.less(0.0, s[0])
-    first = ops.where(present, w[:, 0] / ops.where(present, s[0], 1.0), np.eye(m)[0])
+    first = ops.where(present, w[:, 0] * (1.0 / ops.where(present, s[0], 1.0)), np.eye(m)[0])
     if m == 1:
         return first[:, None]
     if m == 2:
@@ -237,7 +237,7 @@ def _left_basis(w: Matrix, s: Matrix) -> Matrix:
     rest = w[:, 1] - (first @ w[:, 1]) * first
     length = norm(rest)
     usable = ops.less(_RANK * s[0], length)
-    second = ops.where(usable, rest / ops.where(usable, length, 1.0), _perpendicular(first))
+    second = ops.where(usable, rest * (1.0 / ops.where(usable, length, 1.0)), _perpendicular(first))
     third = _facing(cross(first, second), w[:, 2])
     return np.stack([first, second, third], axis=1)
 
@@ -251,4 +251,4 @@ def _perpendicular(u: Matrix) -> Matrix:
     """Return a unit vector perpendicular to the unit vector u."""
     flat = ops.less(ops.absolute(u[2]), 0.7)
     x = ops.where(flat, np.array([-u[1], u[0], 0.0 * u[2]]), np.array([0.0 * u[0], -u[2], u[1]]))
-    return x / norm(x)
+    return x * (1.0 / norm(x))

@@ -156,7 +156,7 @@ def test_orthogonal_pairs_planes() -> None:
         ("roof", {"skew": np.nan}),
         ("roof", {"n": 5}),
         ("roof", {"n": 2}),
-        ("planar", {"n": 2}),
+        ("planar", {"n": 1}),
         ("planar", {"n": 0}),
         ("planar", {"n": 4.5}),
         ("pyramid", {"n": 4.5}),

@@ -31,8 +31,8 @@ Step = tuple[str, tuple[int, ...]]  # an operation and the values it takes
 class Recipe:
     """A random program, as symbols on a tape and as a list of steps for NumPy.
 
-    The tape folds x + 0, 0 * x and x - x without looking at signs of zero, infinities and
-    NaN (said at its rules); programs here do not ask for these, so that nothing is excused.
+    The tape folds x + 0, 0 * x, x - x and x / inf without looking at signs of zero, infinities
+    and NaN (said at its rules); programs here do not ask for these, so that nothing is excused.
     """
 
     def __init__(self, seed: int) -> None:
@@ -93,15 +93,16 @@ class Recipe:
 
     def excused(self, op: str, *args: int) -> bool:
         """Return whether a folding rule would change a special value here."""
-        nodes = [self.symbols[a].node for a in args]
-        all_nodes = self.tape.nodes
-        if any(all_nodes[n].op == "constant" and all_nodes[n].value == 0 for n in nodes):
-            return op in ("add", "sub", "mul")
-        opposite = any(
-            all_nodes[a].op == "neg" and all_nodes[a].args[0] == b
-            for a, b in (nodes, nodes[::-1])
-        )
-        return op == "sub" and nodes[0] == nodes[1] or op == "add" and opposite
+        ids = [self.symbols[a].node for a in args]
+        nodes = [self.tape.nodes[i] for i in ids]
+        constants = [n.value for n in nodes if n.op == "constant"]
+        if op in ("add", "sub", "mul") and 0.0 in constants:
+            return True
+        if op == "div" and nodes[1].op == "constant" and np.isinf(nodes[1].value):
+            return True
+        opposite = ("neg", ids[0]) == (nodes[1].op, *nodes[1].args)
+        opposite |= ("neg", ids[1]) == (nodes[0].op, *nodes[0].args)
+        return op == "sub" and ids[0] == ids[1] or op == "add" and opposite
 
     def program(self, fuse: bool) -> Program:
         """Return the finished program."""
@@ -216,8 +217,11 @@ def polynomial(rng: np.random.Generator) -> Recipe:
     for value in rng.normal(size=3):
         recipe.constant(float(value))
     while len(recipe.steps) < 20:
-        op = str(rng.choice(["add", "sub", "mul", "mul", "neg", "fabs"]))
-        recipe.put(op, *[recipe.real() for _ in OPERATIONS[op].operands])
+        op = str(rng.choice(["add", "sub", "mul", "neg", "fabs"]))
+        value = recipe.put(op, *[recipe.real() for _ in OPERATIONS[op].operands])
+        if op == "mul":
+            recipe.put(str(rng.choice(["add", "sub"])), value, recipe.real())
+            recipe.reals.remove(value)  # so that nothing else needs the product
     recipe.outputs = recipe.reals[-4:]
     return recipe
 
@@ -302,7 +306,7 @@ def test_division_by_a_power_of_two_becomes_an_exact_product() -> None:
     assert program.count()["mul"] == 1 and program.count()["div"] == 1
 
 
-def test_folding_never_forgets_that_zero_has_a_sign_or_that_constants_have_bits() -> None:
+def test_constants_share_a_node_only_if_their_bits_are_equal() -> None:
     tape = Tape()
     assert tape.constant(0.0) != tape.constant(-0.0)
     assert tape.constant(True) != tape.constant(1.0)
@@ -375,6 +379,11 @@ def comparing(x: Any) -> Any:
     return max(x, 2.0 * x)  # the maximum
 
 
+def equating(x: Any) -> Any:
+    """Decide by equality, which Python would answer by identity."""
+    return 1.0 if x == 0.0 else 1.0 / x  # the equality
+
+
 def converting(x: Any) -> Any:
     """Ask for the number behind a symbol."""
     return float(x)  # the number
@@ -385,6 +394,7 @@ def converting(x: Any) -> Any:
     [
         (branching, "the branch", "nullmotion.ops.where"),
         (comparing, "the maximum", "maximum"),
+        (equating, "the equality", "where"),
         (converting, "the number", "still a symbol"),
     ],
 )
@@ -399,6 +409,28 @@ def test_control_flow_by_value_is_refused(source: Any, marker: str, advice: str)
 def test_powers_that_are_not_whole_are_refused() -> None:
     with pytest.raises(TraceError, match="nullmotion.ops.power"):
         trace(lambda x: x**1.5, 1.0)
+
+
+def test_equality_is_recorded() -> None:
+    def source(x: Any, y: Any) -> Any:
+        return ops.where(x == y, 1.0, 2.0), ops.where(x != 3.0, 1.0, 2.0)
+
+    x, y = np.array([1.0, 3.0, np.nan, -0.0]), np.array([1.0, 2.0, np.nan, 0.0])
+    same, different = compile_function(source, 1.0, 1.0)(x, y)
+    assert np.array_equal(same, [1, 2, 2, 1]) and np.array_equal(different, [1, 2, 1, 1])
+
+
+@pytest.mark.parametrize("known", [True, False, np.True_, np.False_])
+def test_booleans_are_chosen_by_what_is_known(known: bool) -> None:
+    def source(x: Any, y: Any) -> Any:
+        chosen = ops.where(known, x < 0.0, y < 0.0)
+        either = ops.where(x < 0.0, y < 0.0, known)
+        return ops.where(chosen, 1.0, 0.0), ops.where(either, 1.0, 0.0)
+
+    x, y = np.array([-1.0, -1.0, 1.0, 1.0]), np.array([-1.0, 1.0, -1.0, 1.0])
+    chosen, either = compile_function(source, 1.0, 1.0)(x, y)
+    assert np.array_equal(chosen, np.where(known, x, y) < 0)
+    assert np.array_equal(either, np.where(x < 0, y < 0, known))
 
 
 def test_guards_are_reported_run_by_run() -> None:

@@ -149,8 +149,8 @@ class CmgArray:
         """Return gimbal rates within the rate limit, by `rate_limit_mode` [rad/s]."""
         if self.rate_limit_mode == "clip":
             return ops.clip(rates, -self.rate_limit, self.rate_limit)
-        excess = ops.amax(ops.absolute(rates) / self.rate_limit)
-        return rates / ops.where(ops.less(1.0, excess), excess, 1.0)
+        excess = ops.amax(ops.absolute(rates) * (1.0 / self.rate_limit))
+        return rates * (1.0 / ops.where(ops.less(1.0, excess), excess, 1.0))
 
     def within_angle_limits(self, delta: Any) -> Any:
         """Return angles stopped at the gimbals' end stops [rad]."""

@@ -22,29 +22,35 @@ def parameters_kind(section: NamedLaw) -> str:
 def given_parameters(section: NamedLaw) -> dict[str, object]:
     """Return what the file gives beside the name."""
     keys = [k for k in type(section).model_fields if k in section.model_fields_set]
-    return {k: getattr(section, k) for k in keys if k not in ("name", "label", "period_s", "delay_s")}
+    return {
+        k: getattr(section, k) for k in keys if k not in ("name", "label", "period_s", "delay_s")
+    }
 
 
-def listed(scenario: Scenario, names: Sequence[str] | None) -> list[tuple[str, CaseSection]]:
-    """Return the cases with their labels: [law], then those of the file or the named laws.
+def listed(
+    scenario: Scenario, names: Sequence[str] | None, more: Sequence[str] = ()
+) -> list[tuple[str, CaseSection]]:
+    """Return the labelled cases: [law], those of the file or the named laws, then more.
 
     Raises:
         UnknownNameError: For a law that does not exist, with the nearest names.
     """
     own = _as_case(scenario.law)
-    if names is None:
-        others = list(scenario.cases)
-    else:
-        others = [sections.case_model(_known(name))(name=name) for name in names]
+    others = list(scenario.cases) if names is None else [_default(name) for name in names]
+    known = [own, *others]
+    others += [
+        case for case in map(_default, more) if not any(_same(case, other) for other in known)
+    ]
     found = [own] if not any(_same(own, other) for other in others) else []
     return _labelled([*found, *others])
 
 
-def _known(name: str) -> str:
-    if not name:
-        raise UnknownNameError("law", name, laws.names(), "--laws")
-    laws.get(name)
-    return name
+def _default(name: str) -> CaseSection:
+    try:
+        laws.get(name)
+    except UnknownNameError:
+        raise UnknownNameError("law", name, laws.names(), "--laws") from None
+    return sections.case_model(name)(name=name)
 
 
 def _as_case(law: LawSection) -> CaseSection:

@@ -107,6 +107,7 @@ def compare(
     law_names: Sequence[str] | None = None,
     vary: Vary | None = None,
     progress: Progress | None = None,
+    more: Sequence[str] = (),
 ) -> Comparison:
     """Run laws on one scenario.
 
@@ -115,27 +116,32 @@ def compare(
         law_names: Laws to run on their defaults in place of the file's ``[[compare.case]]``.
         vary: A key of the scenario and the values it takes.
         progress: Called with the finished share.
+        more: Laws to run on their defaults beside all that.
     """
-    plan = list(_plan(scenario, law_names, vary))
+    plan = list(_plan(scenario, law_names, vary, more))
     made = [_prepared(at, case) for at, _, _, case in plan]
     setups = [setup for setup in made if not isinstance(setup, str)]
     flown = iter(fly.together(setups, progress) if vary else fly.one_by_one(setups, progress))
     done = []
     for entry, setup in zip(plan, made, strict=True):
         done.append(_case(*entry, setup, None if isinstance(setup, str) else next(flown)))
-    return Comparison(scenario, tuple(done), vary.key if vary else None, vary.values if vary else ())
+    return Comparison(
+        scenario, tuple(done), vary.key if vary else None, vary.values if vary else ()
+    )
 
 
-def _plan(scenario: Scenario, names: Sequence[str] | None, vary: Vary | None) -> Iterator[Planned]:
+def _plan(
+    scenario: Scenario, names: Sequence[str] | None, vary: Vary | None, more: Sequence[str]
+) -> Iterator[Planned]:
     """Yield what is to run; every value is checked before the first run."""
-    labelled = chosen.listed(scenario, names)
+    labelled = chosen.listed(scenario, names, more)
     if vary is None:
         yield from ((scenario, None, *entry) for entry in labelled)
         return
     for value in vary.values:
         at = scenario.with_values({vary.key: value}, "--vary")
         if vary.key.startswith("law."):
-            labelled = chosen.listed(at, names)
+            labelled = chosen.listed(at, names, more)
         yield from ((at, value, *entry) for entry in labelled)
 
 
@@ -147,18 +153,29 @@ def _prepared(scenario: Scenario, case: CaseSection) -> Setup | str:
         return error.reason
 
 
-def _case(at: Scenario, value: Any, label: str, case: CaseSection, setup: Setup | str, run: fly.Flown | None) -> Case:
+def _case(
+    at: Scenario,
+    value: Any,
+    label: str,
+    case: CaseSection,
+    setup: Setup | str,
+    run: fly.Flown | None,
+) -> Case:
     cls = laws.get(case.name)
     return Case(
         label=label,
         law=cls.name,
         parameters_kind=chosen.parameters_kind(case),
-        parameters=chosen.given_parameters(case) if isinstance(setup, str) else sections.written(setup.law),
+        parameters=chosen.given_parameters(case)
+        if isinstance(setup, str)
+        else sections.written(setup.law),
         information=tuple(cls.information),
         value=value,
         trajectory=run.trajectory if run else None,
         reason=setup if isinstance(setup, str) else "",
-        metrics={"stopped_at_s": run.trajectory.stopped_at_s, **run.trajectory.metrics} if run else {},
+        metrics={"stopped_at_s": run.trajectory.stopped_at_s, **run.trajectory.metrics}
+        if run
+        else {},
         summary=run.summary if run else {},
     )
 

@@ -71,7 +71,9 @@ def _single(setup: Setup, result: BatchResult, i: int, every: int) -> Flown:
     stopped = result.stopped_at_s[i]
     taken = setup.steps if np.isnan(stopped) else round(stopped / setup.dt)
     kept = taken // every + 1
-    delta, rates, asked, hdot, impulse, wanted = (np.array(column[i, :kept]) for column in result.history)
+    delta, rates, asked, hdot, impulse, wanted = (
+        np.array(column[i, :kept]) for column in result.history
+    )
     if taken % every == 0:
         rates[-1], asked[-1] = np.nan, np.nan
     trajectory = Trajectory(

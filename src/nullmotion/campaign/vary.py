@@ -61,5 +61,7 @@ def _range(text: str, parts: list[str]) -> tuple[float, ...]:
     except (ValueError, ZeroDivisionError, OverflowError):
         raise InputError("--vary", text, _FORM) from None
     if not 1 <= count <= MOST_VALUES:
-        raise InputError("--vary", text, f"a step that leads from start to stop in at most {MOST_VALUES} values")
+        raise InputError(
+            "--vary", text, f"a step that leads from start to stop in at most {MOST_VALUES} values"
+        )
     return tuple(float(f"{start + i * step:.12g}") for i in range(count))

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from nullmotion import tree
-from nullmotion.compile import llvm
+from nullmotion.compile import carry, llvm
 from nullmotion.compile.function import load, store
 from nullmotion.compile.program import Program, finish
 from nullmotion.compile.tape import Symbol, Tape, tracing
@@ -65,12 +65,22 @@ class Loop:
 
 @dataclass(frozen=True)
 class _Piece:
-    """A traced part: programs over (state, parameters, k, row) to state (+ record)."""
+    """A traced part of a step.
+
+    ``program`` goes from (state, parameters, k, row, carried values) to (state, record,
+    carried values), ``prime`` from (state, parameters) to the carried values.
+    """
 
     program: Program
     period: int
     phase: int
     records: int = 0
+    prime: Program | None = None
+
+    @property
+    def extra(self) -> int:
+        """Number of values carried beside the state."""
+        return len(self.prime.outputs) if self.prime else 0
 
 
 @dataclass
@@ -111,8 +121,14 @@ def _trace_start(loop: Loop, fuse: bool) -> tuple[Program, Any]:
     return finish(tape, inputs, tree.flatten(state), fuse), state
 
 
-def _trace_stages(loop: Loop, stages: Sequence[tuple[int, Stage]], like: Any, recording: bool, fuse: bool) -> tuple[Program, int, Any]:
-    """Trace consecutive stages as one program; return it, its record length and the record."""
+def _trace_stages(
+    loop: Loop, stages: Sequence[tuple[int, Stage]], like: Any, recording: bool, fuse: bool, whole: bool
+) -> tuple[_Piece, Any]:
+    """Trace consecutive stages as one program; return it and the record.
+
+    With ``whole``, the stages are all of a step: values that a step can hand to the next
+    become further inputs and outputs.
+    """
     tape = Tape()
     state, state_in = _symbolic(tape, like, "s")
     parameters, parameter_in = _parameters(tape, loop)
@@ -126,7 +142,18 @@ def _trace_stages(loop: Loop, stages: Sequence[tuple[int, Stage]], like: Any, re
             state = stage.function(k, row, state, parameters)
     kept = tree.flatten(record)
     outputs = [*tree.flatten(state), *kept]
-    return finish(tape, [*state_in, *parameter_in, k, *row], outputs, fuse), len(kept), record
+    inputs = [*state_in, *parameter_in, k, *row]
+    period, phase = stages[0][1].period, stages[0][1].phase
+    if not whole:
+        return _Piece(finish(tape, inputs, outputs, fuse), period, phase, len(kept)), record
+    ids = [o.node if isinstance(o, Symbol) else tape.constant(o) for o in outputs]
+    found = carry.find(tape, [s.node for s in state_in], [p.node for p in parameter_in], ids)
+    prime = finish(tape, [*state_in, *parameter_in], [Symbol(tape, i) for i in found.nodes], fuse)
+    extra = [tape.input(f"c{i}") for i in range(len(found.nodes))]
+    outputs += [Symbol(tape, i) for i in found.updates]
+    replace = dict(zip(found.nodes, (e.node for e in extra), strict=True))
+    program = finish(tape, [*inputs, *extra], outputs, fuse, replace)
+    return _Piece(program, period, phase, len(kept), prime), record
 
 
 def _trace_view(loop: Loop, function: Callable[[Any, Any], Any], like: Any, fuse: bool) -> tuple[Program, Any]:
@@ -147,9 +174,9 @@ def trace_loop(loop: Loop, recording: bool, fuse: bool) -> _Trace:
     groups = _groups(loop)
     pieces, record_like = [], ()
     for group in groups:
-        program, records, record = _trace_stages(loop, group, like, recording, fuse)
-        record_like = record if records else record_like
-        pieces.append(_Piece(program, group[0][1].period, group[0][1].phase, records))
+        piece, record = _trace_stages(loop, group, like, recording, fuse, len(groups) == 1)
+        record_like = record if piece.records else record_like
+        pieces.append(piece)
     outputs, output_like = _trace_view(loop, loop.outputs, like, fuse)
     going = loop.active
     active = _trace_view(loop, lambda s, _: going(s), like, fuse)[0] if going else None
@@ -191,6 +218,10 @@ def _live_state(size: int, pieces: Sequence[_Piece], views: Sequence[Program]) -
     for piece, mask in masks:
         for node in [*piece.program.outputs[size:], *piece.program.guards.values()]:
             live |= mask[node] & every
+        if piece.prime:
+            prime = _dependence(piece.prime)
+            for node in piece.prime.outputs:
+                live |= prime[node] & every
     while True:
         grown = live
         for piece, mask in masks:
@@ -234,6 +265,7 @@ class _Writer:
         self.lines: list[str] = []
         self.ahead: list[str] = []  # what follows from the parameters alone: once, before the loop
         self.carried = self.states + len(traced.flags)
+        self.extra = traced.pieces[0].extra if len(traced.pieces) == 1 else 0  # not kept in memory
 
     def source(self) -> str:
         """Return the module's text."""
@@ -285,6 +317,11 @@ class _Writer:
         self.lines += ["  br label %begin", "begin:"]
         for j, value in enumerate([*outputs, *flags]):
             self.lines.append(f"  %i{j} = phi {self.shape.real} [{value}, %start], [%m{j}, %resume]")
+        self.first = [f"%i{j}" for j in range(self.carried)]
+        if self.extra:
+            prime = self.traced.pieces[0].prime
+            assert prime is not None
+            self.first += self._view(prime, self.first[: self.states], "x")
         self.lines.append("  br label %step")
 
     def _steps(self) -> list[str]:
@@ -294,7 +331,7 @@ class _Writer:
         self.lines += ["  %kd = sitofp i64 %k to double"]
         self.lines += self._splat("%kd", "%kv")
         row = self._row()
-        current = [f"%c{j}" for j in range(self.carried)]
+        current = [f"%c{j}" for j in range(self.carried + self.extra)]
         base = 0
         for index, piece in enumerate(self.traced.pieces):
             current = self._piece(index, piece, current, row, base)
@@ -305,7 +342,8 @@ class _Writer:
         going = self._going(current[: self.states])
         self.lines.append(f"  br i1 {going}, label %step, label %done")
         self.lines[phis:phis] = [
-            f"  %c{j} = phi {self.shape.real} [%i{j}, %begin], [{name}, %latch]" for j, name in enumerate(current)
+            f"  %c{j} = phi {self.shape.real} [{self.first[j]}, %begin], [{name}, %latch]"
+            for j, name in enumerate(current)
         ]
         return current
 
@@ -333,10 +371,13 @@ class _Writer:
 
     def _piece(self, index: int, piece: _Piece, current: list[str], row: list[str], base: int) -> list[str]:
         live = self.traced.live
-        extra = range(self.size, self.size + self.parameters + 1 + self.loop.row)
-        outputs = [*live, *range(self.size, self.size + piece.records)]
-        program = _cut(piece.program, [*live, *extra], outputs)
-        inputs = [*current[: self.states], *[f"%p{j}" for j in range(self.parameters)], "%kv", *row]
+        others = range(self.size, self.size + self.parameters + 1 + self.loop.row + self.extra)
+        outputs = [*live, *range(self.size, self.size + piece.records + self.extra)]
+        program = _cut(piece.program, [*live, *others], outputs)
+        inputs = [
+            *current[: self.states], *[f"%p{j}" for j in range(self.parameters)], "%kv", *row,
+            *current[self.carried :],
+        ]
         conditional = piece.period > 1
         if conditional:
             self.lines += [
@@ -349,9 +390,9 @@ class _Writer:
             ]
         fixed = range(self.states, self.states + self.parameters)
         results, guards = self._body(program, inputs, f"g{index}_", fixed)
-        flags = self._raise(current[self.states :], guards, f"g{index}_")
-        self._history(index, results[self.states :], base)
-        after = [*results[: self.states], *flags]
+        flags = self._raise(current[self.states : self.carried], guards, f"g{index}_")
+        self._history(index, results[self.states : self.states + piece.records], base)
+        after = [*results[: self.states], *flags, *results[self.states + piece.records :]]
         if not conditional:
             return after
         self.lines += [f"  br label %join{index}", f"join{index}:"]
@@ -395,6 +436,7 @@ class _Writer:
 
     def _end(self, current: list[str]) -> None:
         self.lines.append("done:")
+        current = current[: self.carried]
         for j, name in enumerate(current):
             self.lines += store(self.shape, "%state", str(j), "%stride", "%l", name, f"%e{j}")
         self.lines += ["  %final = icmp eq i64 %last, 1", "  br i1 %final, label %write, label %lend", "write:"]

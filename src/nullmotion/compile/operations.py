@@ -49,8 +49,10 @@ def exact_fma(a: Any, b: Any, c: Any) -> Any:
     """Return a*b + c rounded once (exact rational arithmetic; for folding and tests)."""
     if np.ndim(a) or np.ndim(b) or np.ndim(c):
         return np.vectorize(exact_fma, otypes=[float])(a, b, c)
-    if not (np.isfinite(a) and np.isfinite(b) and np.isfinite(c)):
+    if not (np.isfinite(a) and np.isfinite(b)):
         return np.float64(a) * np.float64(b) + np.float64(c)
+    if not np.isfinite(c):
+        return np.float64(c)  # a*b itself may overflow: it must not cancel an infinite c
     exact = Fraction(float(a)) * Fraction(float(b)) + Fraction(float(c))
     if exact == 0:
         return np.float64(a) * np.float64(b) + np.float64(c)

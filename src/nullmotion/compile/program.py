@@ -66,12 +66,28 @@ def trace(function: Callable[..., Any], *examples: Any, fuse: bool = True) -> tu
     return finish(tape, inputs, tree.flatten(result), fuse), result
 
 
-def finish(tape: Tape, inputs: Sequence[Symbol], outputs: Sequence[Any], fuse: bool = True) -> Program:
-    """Turn a tape into a program: drop dead code, fuse, number anew."""
+def finish(
+    tape: Tape,
+    inputs: Sequence[Symbol],
+    outputs: Sequence[Any],
+    fuse: bool = True,
+    replace: dict[int, int] | None = None,
+) -> Program:
+    """Turn a tape into a program: drop dead code, fuse, number anew.
+
+    Args:
+        tape: What was recorded.
+        inputs: Inputs of the program.
+        outputs: Symbols or numbers to compute.
+        fuse: Fuse products with the sums that use them.
+        replace: Nodes to be read from other nodes (inputs) wherever they are used.
+    """
     ids = [o.node if isinstance(o, Symbol) else tape.constant(o) for o in outputs]
     guards = {flag: _all(tape, conditions) for flag, conditions in tape.guards.items()}
     guards = {flag: g for flag, g in guards.items() if tape.nodes[g].op != "constant"}
     nodes = list(tape.nodes)
+    if replace:
+        nodes = [Node(n.op, tuple(replace.get(a, a) for a in n.args), n.value) for n in nodes]
     roots = [*ids, *guards.values()]
     if fuse:
         _fuse(nodes, _live(nodes, roots), set(roots))

@@ -169,7 +169,8 @@ def _logic(keep: bool) -> Callable[[Tape, tuple[int, ...], Sequence[Any]], int |
     return rule
 
 
-# x*0 -> 0 and x-x -> 0 drop a NaN or infinity in x; the zeros of the axes make it worth it
+# x*0, x-x and x/inf -> 0 drop a NaN or infinity in x, x+0 -> x and 0-x -> -x the sign of a zero;
+# the zeros of the axes make it worth it
 _RULES: dict[str, Callable[[Tape, tuple[int, ...], Sequence[Any]], int | None]] = {
     "add": _add,
     "sub": _sub,
@@ -275,6 +276,15 @@ class Symbol:
 
     def __pow__(self, power: Any) -> Any:
         return integer_power(self, power)
+
+    def __eq__(self, other: object) -> Any:
+        return self._apply("equal", other)
+
+    def __ne__(self, other: object) -> Any:
+        same = self._apply("equal", other)
+        return same if same is NotImplemented else ~same
+
+    __hash__ = object.__hash__
 
     def __lt__(self, other: Any) -> Any:
         return self._apply("less", other)
@@ -417,7 +427,7 @@ def equal(a: Any, b: Any) -> Any:
 def select(condition: Any, a: Any, b: Any) -> Any:
     """Return a where the condition holds, else b (reals or booleans)."""
     if getattr(a, "kind", None) == "bool" or getattr(b, "kind", None) == "bool":
-        return (condition & a) | (~condition & b)
+        return apply("or", apply("and", condition, a), apply("and", apply("not", condition), b))
     return apply("select", condition, a, b)
 
 

@@ -33,10 +33,12 @@ def draw(panel: Panel, axes: Any, legend: bool = True) -> None:
         axes.axhline(level.value, color=palette.QUIET, linewidth=0.9, linestyle=(0, (2, 2)))
         if level.label:
             _name(axes, level.value, level.label)
+    if panel.ticks:
+        axes.set_xticks(range(len(panel.ticks)), panel.ticks)
     axes.set_title(panel.title)
     axes.set_xlabel(panel.x_title)
     axes.set_ylabel(panel.y_title)
-    axes.margins(x=0.01)
+    axes.margins(x=0.01, y=0.12 if panel.levels else 0.05)
     axes.ticklabel_format(axis="y", style="sci", scilimits=(-3, 4), useOffset=False)
     if legend and len(panel.curves) > 1:
         axes.legend(ncols=_columns(len(panel.curves)), loc="best")
@@ -73,7 +75,8 @@ def sheet(panels: Sequence[Panel], columns: int = 2, title: str = "", common_leg
 
     rows = -(-len(panels) // columns)
     labels = {curve.label for panel in panels for curve in panel.curves}
-    extra = 0.3 * bool(title) + 0.2 * (1 + len(labels) // 3) * common_legend
+    lines = -(-len(labels) // _legend_columns(list(labels), columns)) if common_legend else 0
+    extra = 0.3 * bool(title) + 0.16 * lines
     size = (style.PANEL_WIDTH_IN * columns, style.PANEL_HEIGHT_IN * rows + extra)
     figure = Figure(figsize=size, layout="constrained")
     grid = figure.subplots(rows, columns, squeeze=False)
@@ -85,8 +88,14 @@ def sheet(panels: Sequence[Panel], columns: int = 2, title: str = "", common_leg
         figure.suptitle(title, fontsize=10, fontweight="bold", x=0.01, ha="left")
     if common_legend:
         handles, names = _handles(grid)
-        figure.legend(handles, names, loc="outside lower center", ncols=min(3, len(names)))
+        figure.legend(handles, names, loc="outside lower center", ncols=_legend_columns(names, columns))
     return figure
+
+
+def _legend_columns(names: Sequence[str], sheet_columns: int) -> int:
+    """Return how many legend entries fit side by side."""
+    entry = 0.062 * max(len(name) for name in names) + 0.65  # [in] at the legend's font size
+    return int(np.clip(style.PANEL_WIDTH_IN * sheet_columns // entry, 1, len(names)))
 
 
 def _handles(grid: Any) -> tuple[list[Any], list[str]]:

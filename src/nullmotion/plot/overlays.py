@@ -47,7 +47,7 @@ def sigma_min(cases: Sequence[Case]) -> Panel:
 def off_axis(cases: Sequence[Case]) -> Panel:
     """Torque across the command in percent of it."""
     curves = overlay(cases, lambda run: 100 * torque_fractions(run)[1])
-    return Panel("off_axis", "Off-axis torque", "Share of the command [%]", curves)
+    return Panel("off_axis", "Off-axis torque", "Share of command [%]", curves)
 
 
 def largest_rate(cases: Sequence[Case]) -> Panel:

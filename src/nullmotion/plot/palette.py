@@ -13,7 +13,7 @@ QUIET = "#5b6570"
 GRID = "#e3e6ea"
 ALERT = "#a3230a"
 
-COLOURS = ("#0072b2", "#d55e00", "#008a65", "#b0508a", "#b87800", "#2c93cb", "#1b1f24")
+COLOURS = ("#0072b2", "#d55e00", "#008a65", "#b0508a", "#b87800", "#1b1f24", "#3d9fdc")
 DASHES = ("solid", "dash", "dot", "dashdot", "longdash")
 
 

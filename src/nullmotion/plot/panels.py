@@ -36,7 +36,7 @@ def torque_error(run: Run) -> Panel:
         Curve("across (off-axis)", run.t, 100 * across, palette.colour(1)),
         Curve("along, missing", run.t, 100 * (1 - along), palette.colour(0), "dash"),
     )
-    return Panel("torque_error", "Torque error", "Share of the command [%]", curves)
+    return Panel("torque_error", "Torque error", "Share of command [%]", curves)
 
 
 def momentum(run: Run) -> Panel:

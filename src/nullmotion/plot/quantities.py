@@ -75,8 +75,10 @@ def stuck_since(run: Run) -> float | None:
 
 def saturated(run: Run) -> bool:
     """Return whether the momentum along the command is used up at the end."""
-    state = run.measures.get("momentum_state")
-    return state is not None and bool(state[-1] < USED_UP)
+    state = run.metrics.get("final_momentum_state")
+    if state is None and "momentum_state" in run.measures:
+        state = run.measures["momentum_state"][-1]
+    return state is not None and bool(state < USED_UP)
 
 
 def rate_limits(run: Run) -> list[float]:

@@ -86,6 +86,7 @@ class Panel:
         levels: Limits and thresholds.
         note: A sentence a reader needs beside the title.
         x_title: Quantity and unit of the abscissa.
+        ticks: Names of the abscissas 0, 1, 2, ... where these are no numbers.
     """
 
     key: str
@@ -95,6 +96,7 @@ class Panel:
     levels: tuple[Level, ...] = ()
     note: str = ""
     x_title: str = "Time [s]"
+    ticks: tuple[str, ...] = ()
 
 
 def bundle(x: np.ndarray, columns: np.ndarray, labels: Sequence[str]) -> tuple[Curve, ...]:

@@ -87,7 +87,7 @@ class Charts:
             "x": self._array(x.astype("<f8")),
             "y": self._array(y.astype("<f4")),
             "mode": "lines+markers" if curve.marker else "lines",
-            "line": {"color": curve.colour, "dash": curve.dash, "width": curve.width},
+            "line": {"color": curve.colour, "dash": curve.dash, "width": curve.width, "simplify": False},
         }
 
     def _array(self, values: np.ndarray) -> int:
@@ -121,8 +121,10 @@ def shared_legend(name: str) -> Markup:
 
 
 def _layout(panel: Panel) -> dict[str, Any]:
+    named = [escape(name) for name in panel.ticks]
+    ticks = {"tickvals": list(range(len(named))), "ticktext": named} if named else {}
     return {
-        "xaxis": {**_AXIS, "title": {"text": escape(panel.x_title), "standoff": 6}},
+        "xaxis": {**_AXIS, **ticks, "title": {"text": escape(panel.x_title), "standoff": 6}},
         "yaxis": {**_AXIS, "title": {"text": escape(panel.y_title), "standoff": 4}, "nticks": 6},
         "shapes": [_level_line(level.value) for level in panel.levels],
         "annotations": [_level_name(level.value, level.label) for level in panel.levels if level.label],

@@ -13,7 +13,7 @@ from nullmotion.plot.view import Case, Panel
 from nullmotion.report import page
 from nullmotion.report.charts import Charts, grid, shared_legend
 from nullmotion.report.markup import Markup, tag
-from nullmotion.report.results import outcome, result_table
+from nullmotion.report.results import outcome, result_table, varied_table
 from nullmotion.report.run import thinning
 
 MOST_MULTIPLES = 24  # small multiples of gimbal angles on one page
@@ -25,13 +25,14 @@ TALLY = {
 }
 
 
-def compare_report(comparison: Any, path: str | Path, title: str) -> Path:
+def compare_report(comparison: Any, path: str | Path, title: str, scenario_text: str = "") -> Path:
     """Write a comparison of laws as an HTML page that needs no network.
 
     Args:
         comparison: What `nullmotion.campaign.compare` returns.
         path: File to write.
         title: Title of the page.
+        scenario_text: The scenario file as written, shown on demand.
 
     Returns:
         The path.
@@ -41,15 +42,21 @@ def compare_report(comparison: Any, path: str | Path, title: str) -> Path:
     together = [] if varied else overlays(cases)
     multiples = [] if varied else angle_panels(cases)[:MOST_MULTIPLES]
     charts = Charts.for_curves(sum(len(p.curves) for p in (*varied, *together, *multiples)))
-    parts = [headline(cases, title), page.section("Results", result_table(cases), id="results")]
+    parts = [headline(cases, title)]
     if varied:
-        parts.append(curves(charts, varied, "Over the varied value", "varied", page.clockless()))
+        key = comparison.varied
+        parts.append(curves(charts, varied, f"Over {key}", "varied", page.clockless()))
+        parts.append(page.section("Results", page.details("All cases", varied_table(cases, key)), id="results"))
+    else:
+        parts.append(page.section("Results", result_table(cases), id="results"))
     if together:
         parts.append(curves(charts, together, "Over time", "time", page.toolbar()))
     if multiples:
         drawn = [charts.add(panel, "time", "angles", small=True) for panel in multiples]
         parts.append(page.section("Gimbal angles", shared_legend("angles"), grid(drawn, True), id="angles"))
     parts.append(thinning(charts))
+    if scenario_text:
+        parts.append(page.scenario(scenario_text))
     ran = [case.trajectory for case in cases if case.trajectory is not None]
     return page.write(path, page.document(title, parts, charts, page.versions(*ran)))
 

@@ -46,9 +46,15 @@ def section(title: str, *parts: object, id: str) -> Markup:
     return tag("section", tag("h2", title, id=f"{id}-title"), *parts, id=id, aria_labelledby=f"{id}-title")
 
 
-def details(summary: str, content: str) -> Markup:
-    """Return text that opens on demand, as it was written."""
-    return tag("details", tag("summary", summary), tag("pre", tag("code", content), tabindex="0"))
+def details(summary: str, content: Markup) -> Markup:
+    """Return content that opens on demand."""
+    return tag("details", tag("summary", summary), content)
+
+
+def scenario(content: str) -> Markup:
+    """Return the section with a scenario file as it was written."""
+    shown = tag("pre", tag("code", content), tabindex="0", aria_label="Scenario file")
+    return section("Scenario", details("Scenario file", shown), id="scenario")
 
 
 def toolbar() -> Markup:

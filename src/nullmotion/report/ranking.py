@@ -31,7 +31,7 @@ class Column(NamedTuple):
 
 COLUMNS = (
     Column("Time to stop [s]", "stopped_at_s"),
-    Column("Momentum reserve [N m s]", "final_momentum_reserve_Nms", "low"),
+    Column("Momentum reserve [N\u00a0m\u00a0s]", "final_momentum_reserve_Nms", "low"),
     Column("Off-axis torque, peak [%]", "max_off_axis_torque_fraction", "low"),
     Column("Off-axis torque, RMS [%]", "rms_off_axis_torque_fraction", "low"),
     Column("Along-axis error, peak [%]", "max_along_axis_torque_fraction", "low"),

@@ -12,6 +12,7 @@ from nullmotion.report.tables import table
 from nullmotion.report.verdict import status_words, verdict
 from nullmotion.report.wording import plain
 
+MOST_ROWS = 500  # of a varied comparison in its page
 KINDS = {"defaults": "defaults", "published": "as published", "given": "given"}
 MARKING = (
     "★ and a frame mark the best value of a column among the cases that did their job "
@@ -51,6 +52,21 @@ def result_table(cases: Sequence[Case]) -> Markup:
     numeric = range(2, 2 + len(COLUMNS))
     made = table(head, rows, "Cases and their results", numeric=numeric, wide=True)
     return join(made, tag("p", MARKING, class_="note"))
+
+
+def varied_table(cases: Sequence[Any], key: str) -> Markup:
+    """Return the table of a comparison over the values of a key, nothing marked."""
+    shown = cases[:MOST_ROWS]
+    rows = [
+        (_name(case), _result(outcome(case)), str(case.value))
+        + tuple(column.written(case.metrics.get(column.key)) for column in COLUMNS)
+        + (_kind(case), _information(case), _status(case))
+        for case in shown
+    ]
+    head = ("Case", "Result", key, *(c.title for c in COLUMNS), "Parameters", "Information used", "Status")
+    made = table(head, rows, "Cases at each value", numeric=range(2, 3 + len(COLUMNS)), wide=True)
+    left = len(cases) - len(shown)
+    return join(made, tag("p", f"{left} more cases are not shown here.", class_="note") if left else "")
 
 
 def _name(case: Any) -> Markup:

@@ -39,7 +39,7 @@ def run_report(trajectory: Run, path: str | Path, title: str, scenario_text: str
         page.section("Metrics", tag("div", metric_table(trajectory.metrics), class_="metrics"), id="metrics"),
     ]
     if scenario_text:
-        parts.append(page.section("Scenario", page.details("Scenario file", scenario_text), id="scenario"))
+        parts.append(page.scenario(scenario_text))
     return page.write(path, page.document(title, parts, charts, page.versions(trajectory)))
 
 

@@ -15,10 +15,20 @@ from nullmotion.sim.batch import BatchResult, run_batch, structure
 from nullmotion.sim.setup import Setup
 
 _START, _COMMAND = "initial.gimbal_deg", "mission.hdot_Nm"
-_SEARCHED = (("array",), ("plant",), ("initial",), ("law",), ("mission",), ("simulation",), ("simulation", "stop"))
+_SEARCHED = (
+    ("array",),
+    ("plant",),
+    ("initial",),
+    ("law",),
+    ("mission",),
+    ("simulation",),
+    ("simulation", "stop"),
+)
 
 
-def run(scenario: Scenario, values: Mapping[str, Any], metrics: tuple[str, ...] | None, **options: Any) -> BatchResult:
+def run(
+    scenario: Scenario, values: Mapping[str, Any], metrics: tuple[str, ...] | None, **options: Any
+) -> BatchResult:
     """Return the metrics of the runs that values by key describe; see `simulate_batch`."""
     columns = {dotted_key(scenario, key): value for key, value in values.items()}
     count = _count(columns)
@@ -30,12 +40,14 @@ def run(scenario: Scenario, values: Mapping[str, Any], metrics: tuple[str, ...] 
     setups = _setups(scenario, columns, count, metrics)
     together = groups(setups)
     if len(together) > 1 and options.get("history"):
-        raise InputError("history", options["history"], "0 when the runs differ in more than numbers")
+        raise InputError(
+            "history", options["history"], "0 when the runs differ in more than numbers"
+        )
     parts = []
     for rows in together:
         picked = [setups[i] for i in rows]
-        part = (None if x is None else x[rows] for x in (delta, hdot))
-        parts.append(_simulated(picked[0], picked, *part, options))
+        starts, commands = (None if x is None else x[rows] for x in (delta, hdot))
+        parts.append(_simulated(picked[0], picked, starts, commands, options))
     return merge.merged(parts, together)
 
 
@@ -49,7 +61,9 @@ def dotted_key(scenario: Scenario, key: str) -> str:
         return found[0]
     if found:
         raise InputError(key, "(given)", f"one section; it stands in several: {', '.join(found)}")
-    raise InputError(key, "(given)", keys.hint(key, [name for names in known.values() for name in names]))
+    raise InputError(
+        key, "(given)", keys.hint(key, [name for names in known.values() for name in names])
+    )
 
 
 def _count(columns: Mapping[str, Any]) -> int:
@@ -70,7 +84,9 @@ def _table(key: str, value: Any, widths: tuple[int, ...]) -> np.ndarray:
     except (TypeError, ValueError):
         raise InputError(key, type(value).__name__, "numbers, one row for each run") from None
     if table.ndim != 2 or table.shape[1] not in widths:
-        raise InputError(key, table.shape, f"shape (runs, {' or '.join(map(str, sorted(set(widths))))})")
+        raise InputError(
+            key, table.shape, f"shape (runs, {' or '.join(map(str, sorted(set(widths))))})"
+        )
     bad = np.flatnonzero(~np.isfinite(table).all(axis=1))
     if len(bad):
         raise InputError(f"{key}[{bad[0]}]", table[bad[0]].tolist(), "finite numbers")
@@ -84,9 +100,13 @@ def _start(scenario: Scenario, base: Setup, value: Any) -> np.ndarray | None:
     table = _table(_START, value, (n, n + len(set(scenario.array.failed_cmgs))))
     delta = objects.working(scenario.array, np.radians(table), n)
     limits = base.array.angle_limits
-    out = np.flatnonzero(((delta < limits[:, 0] - 1e-12) | (delta > limits[:, 1] + 1e-12)).any(axis=1))
+    out = np.flatnonzero(
+        ((delta < limits[:, 0] - 1e-12) | (delta > limits[:, 1] + 1e-12)).any(axis=1)
+    )
     if len(out):
-        raise InputError(f"{_START}[{out[0]}]", table[out[0]].tolist(), "angles within array.angle_limits_deg")
+        raise InputError(
+            f"{_START}[{out[0]}]", table[out[0]].tolist(), "angles within array.angle_limits_deg"
+        )
     return delta
 
 
@@ -94,9 +114,14 @@ def _command(base: Setup, value: Any) -> np.ndarray | None:
     return None if value is None else _table(_COMMAND, value, (base.array.m,))
 
 
-def _setups(scenario: Scenario, columns: Mapping[str, Any], count: int, metrics: Any) -> list[Setup]:
+def _setups(
+    scenario: Scenario, columns: Mapping[str, Any], count: int, metrics: Any
+) -> list[Setup]:
     """Return one setup for each run; equal values share one."""
-    lists = {k: v.tolist() if isinstance(v, np.ndarray) else [_plain(x) for x in v] for k, v in columns.items()}
+    lists = {
+        k: v.tolist() if isinstance(v, np.ndarray) else [_plain(x) for x in v]
+        for k, v in columns.items()
+    }
     made: dict[str, Setup] = {}
     setups = []
     for i in range(count):
@@ -123,7 +148,9 @@ def groups(setups: Sequence[Setup]) -> list[np.ndarray]:
     return [np.array(r) for r in rows.values()]
 
 
-def _simulated(base: Setup, setups: Any, delta: Any, hdot: Any, options: Mapping[str, Any]) -> BatchResult:
+def _simulated(
+    base: Setup, setups: Any, delta: Any, hdot: Any, options: Mapping[str, Any]
+) -> BatchResult:
     if base.law.traceable:
         return run_batch(base, setups=setups, delta=delta, hdot=hdot, **options)
     return merge.one_by_one(base, setups, delta, hdot, options.get("progress"))

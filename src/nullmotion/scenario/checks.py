@@ -41,7 +41,11 @@ def _check_array(scenario: Scenario, v: Validator) -> CmgArray | None:
     section = scenario.array
     wheels = [k for k in ("wheel_inertia_kg_m2", "wheel_speed_rpm") if section.given(k)]
     if wheels and section.given("h0_Nms"):
-        v.add(("array", "h0_Nms"), section.h0_Nms, f"either h0_Nms or wheel_inertia_kg_m2 and wheel_speed_rpm; {wheels[0]} is given too")
+        v.add(
+            ("array", "h0_Nms"),
+            section.h0_Nms,
+            f"either h0_Nms or wheel_inertia_kg_m2 and wheel_speed_rpm; {wheels[0]} is given too",
+        )
     elif len(wheels) == 1:
         other = "wheel_speed_rpm" if wheels[0] == "wheel_inertia_kg_m2" else "wheel_inertia_kg_m2"
         v.add(("array", wheels[0]), getattr(section, wheels[0]), f"only together with {other}")
@@ -55,7 +59,11 @@ def _check_array(scenario: Scenario, v: Validator) -> CmgArray | None:
         _add_construction(v, ("array",), error)
         return None
     except ValueError:  # lengths of wheel inertias and speeds
-        v.add(("array", "wheel_speed_rpm"), section.wheel_speed_rpm, "one number or one for each wheel")
+        v.add(
+            ("array", "wheel_speed_rpm"),
+            section.wheel_speed_rpm,
+            "one number or one for each wheel",
+        )
         return None
     return _check_failures(scenario, whole, v)
 
@@ -64,9 +72,17 @@ def _check_failures(scenario: Scenario, whole: CmgArray, v: Validator) -> CmgArr
     section = scenario.array
     frozen = section.frozen_at_deg
     if isinstance(frozen, tuple) and len(frozen) != len(set(section.failed_cmgs)):
-        v.add(("array", "frozen_at_deg"), frozen, f"one number or {len(section.failed_cmgs)}, one for each failed CMG")
+        v.add(
+            ("array", "frozen_at_deg"),
+            frozen,
+            f"one number or {len(section.failed_cmgs)}, one for each failed CMG",
+        )
     elif len(set(section.failed_cmgs)) >= whole.n or any(i >= whole.n for i in section.failed_cmgs):
-        v.add(("array", "failed_cmgs"), section.failed_cmgs, f"indices from 0 to {whole.n - 1}, at least one CMG left")
+        v.add(
+            ("array", "failed_cmgs"),
+            section.failed_cmgs,
+            f"indices from 0 to {whole.n - 1}, at least one CMG left",
+        )
     else:
         return objects.array(section)
     return None
@@ -76,7 +92,11 @@ def _check_start(scenario: Scenario, array: CmgArray, v: Validator) -> None:
     section, angles = scenario.array, scenario.initial.gimbal_deg
     total = array.n + len(set(section.failed_cmgs))
     if angles is not None and len(angles) not in (array.n, total):
-        v.add(("initial", "gimbal_deg"), angles, f"{_counts(array.n, total)} numbers, one for each CMG (this has {len(angles)})")
+        v.add(
+            ("initial", "gimbal_deg"),
+            angles,
+            f"{_counts(array.n, total)} numbers, one for each CMG (this has {len(angles)})",
+        )
         return
     start = objects.start(section, angles, array.n)
     low, high = array.angle_limits[:, 0], array.angle_limits[:, 1]
@@ -93,12 +113,17 @@ def _check_mission(scenario: Scenario, array: CmgArray, v: Validator) -> None:
     mission = scenario.mission
     if (mission.hdot_Nm is None) == (mission.profile is None):
         both = "exactly one of hdot_Nm and profile"
-        v.add(("mission",), MISSING, f"needs {both}" if mission.profile is None else f"takes {both}, not both")
+        v.add(
+            ("mission",),
+            MISSING,
+            f"needs {both}" if mission.profile is None else f"takes {both}, not both",
+        )
     elif mission.hdot_Nm is not None and len(mission.hdot_Nm) != array.m:
         v.add(
             ("mission", "hdot_Nm"),
             mission.hdot_Nm,
-            f"{array.m} numbers, one for each torque dimension of the array (this has {len(mission.hdot_Nm)})",
+            f"{array.m} numbers, one for each torque dimension of the array "
+            f"(this has {len(mission.hdot_Nm)})",
         )
     elif mission.profile is not None:
         try:
@@ -112,17 +137,27 @@ def _check_times(scenario: Scenario, v: Validator) -> None:
     if times.dt_s > times.duration_s:
         v.add(("simulation", "dt_s"), times.dt_s, f"at most duration_s = {times.duration_s:g}")
     elif times.duration_s / times.dt_s > MOST_STEPS:
-        v.add(("simulation", "dt_s"), times.dt_s, f"a step of which at most {MOST_STEPS} make up duration_s = {times.duration_s:g}")
+        v.add(
+            ("simulation", "dt_s"),
+            times.dt_s,
+            f"a step of which at most {MOST_STEPS} make up duration_s = {times.duration_s:g}",
+        )
     for key in ("period_s", "delay_s"):
         value = getattr(law, key)
-        if value is not None and not is_multiple(value, times.dt_s, least=1 if key == "period_s" else 0):
+        if value is not None and not is_multiple(
+            value, times.dt_s, least=1 if key == "period_s" else 0
+        ):
             v.add(("law", key), value, f"a whole multiple of simulation.dt_s = {times.dt_s:g}")
 
 
 def is_multiple(value: float, step: float, least: int = 0) -> bool:
     """Return whether a time is a whole multiple of a step."""
     count = value / step
-    return math.isfinite(count) and round(count) >= least and abs(count - round(count)) <= WHOLE * max(1.0, count)
+    return (
+        math.isfinite(count)
+        and round(count) >= least
+        and abs(count - round(count)) <= WHOLE * max(1.0, count)
+    )
 
 
 def _add_construction(v: Validator, section: Path, error: InputError) -> None:

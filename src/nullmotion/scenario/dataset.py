@@ -15,11 +15,12 @@ from nullmotion.scenario.scenario import Scenario
 from nullmotion.sim.trajectory import Trajectory
 
 CONVENTIONS = (
-    "SI units and radians; vectors in body frame B along torque_axes. CMG i (counted from 0) has gimbal axis g_i, "
-    "spin axis s_i at delta_i = 0, t_i = g_i x s_i, momentum h_i = h0_i (s_i cos delta_i + t_i sin delta_i); "
-    "A = dh/d(delta). hdot is the commanded rate of the array's momentum, torque the achieved A delta_dot; the "
-    "vehicle gets -A delta_dot - omega x h. Rates act from their row's time to the next row's; the last row has "
-    "none. Singularity measures are those of A over the mean momentum of the working CMGs."
+    "SI units and radians; vectors in body frame B along torque_axes. CMG i (counted from 0) "
+    "has gimbal axis g_i, spin axis s_i at delta_i = 0, t_i = g_i x s_i, momentum "
+    "h_i = h0_i (s_i cos delta_i + t_i sin delta_i); A = dh/d(delta). hdot is the commanded rate "
+    "of the array's momentum, torque the achieved A delta_dot; the vehicle gets "
+    "-A delta_dot - omega x h. Rates act from their row's time to the next row's; the last row "
+    "has none. Singularity measures are those of A over the mean momentum of the working CMGs."
 )
 
 
@@ -43,7 +44,12 @@ _HISTORY = (
     ("momentum", _AXIS, "N m s", "momentum of the array"),
     ("momentum_wanted", _AXIS, "N m s", "start momentum and integral of the command"),
     ("impulse", _AXIS, "N m s", "integral of the achieved torque"),
-    ("eram", _CMG, "1", "effective residual angular momentum over the mean momentum (Mao 2019, Eq 28)"),
+    (
+        "eram",
+        _CMG,
+        "1",
+        "effective residual angular momentum over the mean momentum (Mao 2019, Eq 28)",
+    ),
 )
 _MEASURES = {
     "sigma_min": "least singular value of A over the mean momentum",
@@ -60,7 +66,15 @@ def variables(trajectory: Trajectory) -> list[Variable]:
     for name, dims, units, text in _HISTORY:
         found.append(Variable(name, dims, np.asarray(getattr(trajectory, name)), units, text))
     for name, values in trajectory.measures.items():
-        found.append(Variable(name, ("time",), np.asarray(values), "1", _MEASURES.get(name, name.replace("_", " "))))
+        found.append(
+            Variable(
+                name,
+                ("time",),
+                np.asarray(values),
+                "1",
+                _MEASURES.get(name, name.replace("_", " ")),
+            )
+        )
     return [*found, *_geometry(trajectory)]
 
 
@@ -68,21 +82,41 @@ def _geometry(trajectory: Trajectory) -> list[Variable]:
     array, real = trajectory.setup.array, trajectory.setup.true_array
     axes, one = ("cmg", "body_axis"), ("cmg",)
     return [
-        Variable("torque_axes", ("torque_axis", "body_axis"), np.asarray(array.torque_axes), "1", "directions of torque in B"),
-        Variable("gimbal_axes", axes, array.gimbal_axes, "1", "gimbal axes in B as the law knows them"),
-        Variable("spin_axes", axes, array.spin_axes, "1", "spin axes in B at delta = 0 as the law knows them"),
+        Variable(
+            "torque_axes",
+            ("torque_axis", "body_axis"),
+            np.asarray(array.torque_axes),
+            "1",
+            "directions of torque in B",
+        ),
+        Variable(
+            "gimbal_axes", axes, array.gimbal_axes, "1", "gimbal axes in B as the law knows them"
+        ),
+        Variable(
+            "spin_axes",
+            axes,
+            array.spin_axes,
+            "1",
+            "spin axes in B at delta = 0 as the law knows them",
+        ),
         Variable("h0", one, array.h0, "N m s", "spin momentum as the law knows it"),
         Variable("rate_limit", one, array.rate_limit, "rad s-1", "largest gimbal rate"),
         Variable("true_gimbal_axes", axes, real.gimbal_axes, "1", "gimbal axes in B as they are"),
-        Variable("true_spin_axes", axes, real.spin_axes, "1", "spin axes in B at delta = 0 as they are"),
+        Variable(
+            "true_spin_axes", axes, real.spin_axes, "1", "spin axes in B at delta = 0 as they are"
+        ),
         Variable("true_h0", one, real.h0, "N m s", "spin momentum as it is"),
     ]
 
 
-def attributes(trajectory: Trajectory, scenario: Scenario | None = None, law_file: str = "") -> dict[str, str]:
+def attributes(
+    trajectory: Trajectory, scenario: Scenario | None = None, law_file: str = ""
+) -> dict[str, str]:
     """Return what tells how a run came about: text, all of it."""
     found = {
-        "title": scenario.title if scenario else f"{trajectory.setup.law.name} on {trajectory.setup.array.label}",
+        "title": scenario.title
+        if scenario
+        else f"{trajectory.setup.law.name} on {trajectory.setup.array.label}",
         "source": f"nullmotion {versions()['nullmotion']}",
         "conventions": CONVENTIONS,
         "law": trajectory.setup.law.name,

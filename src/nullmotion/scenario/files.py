@@ -49,7 +49,9 @@ def _work_folder(target: Path) -> Path:
         target.mkdir(parents=True, exist_ok=True)
         return Path(tempfile.mkdtemp(prefix=".nullmotion-", dir=target))
     except OSError as error:
-        raise InputError("--out", str(target), f"a folder that can be written to ({error.strerror})") from None
+        raise InputError(
+            "--out", str(target), f"a folder that can be written to ({error.strerror})"
+        ) from None
 
 
 def _put_in_place(target: Path, new: Path, old: Path, owned: Sequence[str]) -> None:

@@ -12,7 +12,7 @@ UNITS = {  # as written in keys: as written in messages
 
 
 def split_unit(key: str) -> tuple[str, str]:
-    """Return a key without the unit at its end, in small letters, and the unit as messages write it."""
+    """Return a key without its unit, in small letters, and the unit as messages write it."""
     for unit, text in UNITS.items():
         if key.lower().endswith("_" + unit.lower()):
             return key[: -len(unit) - 1].lower(), text

@@ -18,10 +18,16 @@ def _library() -> Any:
 
 def library_names() -> list[str]:
     """Return the names of the scenarios that come with nullmotion."""
-    return sorted(item.name.removesuffix(".toml") for item in _library().iterdir() if item.name.endswith(".toml"))
+    return sorted(
+        item.name.removesuffix(".toml")
+        for item in _library().iterdir()
+        if item.name.endswith(".toml")
+    )
 
 
-def load_scenario(scenario: str | Path, values: Mapping[str, Any] | None = None, origin: str = "--set") -> Scenario:
+def load_scenario(
+    scenario: str | Path, values: Mapping[str, Any] | None = None, origin: str = "--set"
+) -> Scenario:
     """Return a checked scenario.
 
     Args:
@@ -33,11 +39,12 @@ def load_scenario(scenario: str | Path, values: Mapping[str, Any] | None = None,
         ScenarioError: For a scenario that cannot be used, with everything that is wrong.
         InputError: For a file that cannot be read.
     """
-    source = _source(scenario)
+    source = find(scenario)
     return checked(source.over(values, origin) if values else source)
 
 
-def _source(scenario: str | Path) -> Source:
+def find(scenario: str | Path) -> Source:
+    """Return the unchecked text of a scenario; see `load_scenario`."""
     if isinstance(scenario, str) and ("\n" in scenario or "=" in scenario):
         return Source(scenario, "scenario text", Path())
     path = Path(scenario)
@@ -49,7 +56,11 @@ def _source(scenario: str | Path) -> Source:
     if path.is_dir():
         raise InputError("scenario", str(scenario), "a TOML file, not a folder")
     if path.suffix or path.name != str(scenario):
-        raise InputError("scenario", str(scenario), "an existing file, or a name from `nullmotion list scenarios`")
+        raise InputError(
+            "scenario",
+            str(scenario),
+            "an existing file, or a name from `nullmotion list scenarios`",
+        )
     raise UnknownNameError("scenario", str(scenario), library_names())
 
 
@@ -59,4 +70,6 @@ def _text(path: Path) -> str:
     except UnicodeDecodeError:
         raise InputError("scenario", str(path), "a text file in UTF-8") from None
     except OSError as error:
-        raise InputError("scenario", str(path), f"a file that can be read ({error.strerror})") from None
+        raise InputError(
+            "scenario", str(path), f"a file that can be read ({error.strerror})"
+        ) from None

@@ -38,11 +38,16 @@ def merged(parts: Sequence[BatchResult], rows: Sequence[np.ndarray]) -> BatchRes
 def _joined(columns: Sequence[np.ndarray], order: np.ndarray) -> np.ndarray:
     widths = {column.shape[1:] for column in columns}
     if len(widths) > 1:
-        raise InputError("runs", sorted(widths), "arrays with the same number of CMGs and torque dimensions")
-    return np.concatenate(columns)[order]
+        raise InputError(
+            "runs", sorted(widths), "arrays with the same number of CMGs and torque dimensions"
+        )
+    joined: np.ndarray = np.concatenate(columns)[order]
+    return joined
 
 
-def one_by_one(base: Setup, setups: Sequence[Setup] | None, delta: Any, hdot: Any, progress: Any) -> BatchResult:
+def one_by_one(
+    base: Setup, setups: Sequence[Setup] | None, delta: Any, hdot: Any, progress: Any
+) -> BatchResult:
     """Return the result of runs flown one after another (laws that cannot be traced)."""
     count = len(next(x for x in (setups, delta, hdot) if x is not None))
     runs = list(setups or [base] * count)

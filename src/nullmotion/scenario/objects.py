@@ -48,11 +48,15 @@ def momenta(section: ArraySection) -> Any:
     """Return the spin momenta [N m s]: given, or wheel inertia times wheel speed."""
     if section.wheel_inertia_kg_m2 is None or section.wheel_speed_rpm is None:
         return np.asarray(section.h0_Nms, float)
-    return np.asarray(section.wheel_inertia_kg_m2, float) * np.asarray(section.wheel_speed_rpm, float) * _RPM
+    return (
+        np.asarray(section.wheel_inertia_kg_m2, float)
+        * np.asarray(section.wheel_speed_rpm, float)
+        * _RPM
+    )
 
 
 def working(section: ArraySection, values: Any, n: int) -> np.ndarray:
-    """Return values of the working CMGs from those of the working or of all CMGs, on the last axis."""
+    """Return values of the working CMGs (last axis) from those of the working or of all."""
     given = np.asarray(values, float)
     if given.shape[-1] == n:
         return given

@@ -36,9 +36,13 @@ def real_array(array: CmgArray, plant: PlantSection, generator: np.random.Genera
 def _turned(vectors: np.ndarray, axis: np.ndarray, angle: float) -> np.ndarray:
     """Return vectors turned about unit axes, row by row (Rodrigues)."""
     along = np.sum(axis * vectors, axis=1, keepdims=True) * axis
-    return np.cos(angle) * (vectors - along) + np.sin(angle) * np.cross(axis, vectors) + along
+    turned: np.ndarray = (
+        np.cos(angle) * (vectors - along) + np.sin(angle) * np.cross(axis, vectors) + along
+    )
+    return turned
 
 
 def encoder_bias(n: int, plant: PlantSection, generator: np.random.Generator) -> np.ndarray:
     """Return what the measured angles are off by [rad], uniform within the bound, (n,)."""
-    return generator.uniform(-1.0, 1.0, n) * np.radians(plant.encoder_bias_deg)
+    bias: np.ndarray = generator.uniform(-1.0, 1.0, n) * np.radians(plant.encoder_bias_deg)
+    return bias

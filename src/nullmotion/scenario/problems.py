@@ -40,7 +40,7 @@ class Problem:
 def shortened(value: Any) -> str:
     """Return a value as in a TOML file, its middle left out if it is long."""
     text = value_text(value)
-    return text if len(text) <= _LONGEST else f"{text[:_LONGEST - 20]} ... {text[-15:]}"
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 20]} ... {text[-15:]}"
 
 
 class ScenarioError(InputError):
@@ -53,6 +53,8 @@ class ScenarioError(InputError):
     def __init__(self, problems: Sequence[Problem]) -> None:
         """Keep the problems; the first one gives key, value, allowed and where."""
         first = problems[0]
-        super().__init__(first.key, None if first.value is MISSING else first.value, first.allowed, first.where)
+        super().__init__(
+            first.key, None if first.value is MISSING else first.value, first.allowed, first.where
+        )
         self.problems = tuple(problems)
         self.args = ("\n".join(str(p) for p in problems),)

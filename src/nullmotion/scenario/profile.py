@@ -45,11 +45,17 @@ def load(source: Source, name: str, m: int) -> Profile:
         raise ProfileError("a CSV file in UTF-8") from None
     except OSError:
         raise ProfileError(f"an existing CSV file (looked for beside {source.name})") from None
-    rows = [(i, row) for i, row in enumerate(csv.reader(text.splitlines()), 1) if any(c.strip() for c in row)]
+    rows = [
+        (i, row)
+        for i, row in enumerate(csv.reader(text.splitlines()), 1)
+        if any(c.strip() for c in row)
+    ]
     header = ["t_s", *AXES[:m]]
     if not rows or [c.strip() for c in rows[0][1]] != header:
         raise ProfileError(f"a CSV whose first line is {','.join(header)}")
-    table = np.array([_numbers(name, line, row, m + 1) for line, row in rows[1:]]).reshape(-1, m + 1)
+    table = np.array([_numbers(name, line, row, m + 1) for line, row in rows[1:]]).reshape(
+        -1, m + 1
+    )
     if not len(table):
         raise ProfileError(f"a CSV with at least one row below {','.join(header)}")
     _check_times(name, [line for line, _ in rows[1:]], table[:, 0])
@@ -62,7 +68,9 @@ def _numbers(name: str, line: int, row: list[str], count: int) -> list[float]:
     except ValueError:
         numbers = []
     if len(numbers) != count or not np.isfinite(numbers).all():
-        raise ProfileError(f"{count} finite numbers in every row ({name}:{line} is {','.join(row)!r})")
+        raise ProfileError(
+            f"{count} finite numbers in every row ({name}:{line} is {','.join(row)!r})"
+        )
     return numbers
 
 
@@ -70,4 +78,6 @@ def _check_times(name: str, lines: list[int], t: np.ndarray) -> None:
     late = np.flatnonzero(np.diff(t) <= 0)
     if len(late):
         i = int(late[0]) + 1
-        raise ProfileError(f"times that increase ({name}:{lines[i]} has {t[i]:g} s after {t[i - 1]:g} s)")
+        raise ProfileError(
+            f"times that increase ({name}:{lines[i]} has {t[i]:g} s after {t[i - 1]:g} s)"
+        )

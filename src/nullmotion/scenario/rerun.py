@@ -52,17 +52,24 @@ def read(directory: str | Path) -> Stored:
     path = Path(directory)
     path = path / TRAJECTORY if path.is_dir() else path
     if not path.is_file():
-        raise InputError("DIR", str(directory), f"a folder with a {TRAJECTORY}, as `nullmotion run --out DIR` writes it")
+        raise InputError(
+            "DIR",
+            str(directory),
+            f"a folder with a {TRAJECTORY}, as `nullmotion run --out DIR` writes it",
+        )
     import netCDF4
 
     try:
         with netCDF4.Dataset(path) as file:
             attributes = {name: str(file.getncattr(name)) for name in file.ncattrs()}
-            variables = {name: np.asarray(v[...].filled() if np.ma.isMA(v[...]) else v[...]) for name, v in file.variables.items()}
+            file.set_auto_mask(False)
+            variables = {name: np.asarray(v[...]) for name, v in file.variables.items()}
     except OSError:
         raise InputError("DIR", str(path), "a NetCDF file") from None
     if "scenario" not in attributes:
-        raise InputError("DIR", str(path), "a file that holds its scenario, written by `nullmotion run`")
+        raise InputError(
+            "DIR", str(path), "a file that holds its scenario, written by `nullmotion run`"
+        )
     return Stored(attributes, variables)
 
 
@@ -84,5 +91,10 @@ def verdict(stored: Stored, again: Trajectory) -> str:
 def _reasons(stored: Stored, again: Trajectory) -> str:
     now = {f"{k}_version": v for k, v in dataset.versions().items()}
     now |= {"instruction_set": again.instruction_set, "backend": again.backend}
-    other = [f"{k.removesuffix('_version')} {stored.attributes.get(k)} -> {v}" for k, v in now.items() if stored.attributes.get(k) != v]
+    then = stored.attributes
+    other = [
+        f"{key.removesuffix('_version')} {then.get(key)} -> {value}"
+        for key, value in now.items()
+        if then.get(key) != value
+    ]
     return f"; {', '.join(other)}" if other else "; same versions and instruction set"

@@ -6,7 +6,7 @@ import dataclasses
 import types
 import typing
 from collections.abc import Mapping
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -29,17 +29,17 @@ def array_model(layout: str) -> type[schema.ArraySection]:
     """Return the model of ``[array]`` for a layout."""
     if layout == CUSTOM:
         return schema.CustomArraySection
-    return _extended(schema.ArraySection, layouts.get(layout))
+    return _extended(schema.ArraySection, layouts.get(layout))  # type: ignore[arg-type]
 
 
 def law_model(name: str) -> type[schema.LawSection]:
     """Return the model of ``[law]`` for a law."""
-    return _extended(schema.LawSection, laws.get(name))
+    return _extended(schema.LawSection, laws.get(name))  # type: ignore[arg-type]
 
 
 def case_model(name: str) -> type[schema.CaseSection]:
     """Return the model of ``[[compare.case]]`` for a law."""
-    return _extended(schema.CaseSection, laws.get(name))
+    return _extended(schema.CaseSection, laws.get(name))  # type: ignore[arg-type]
 
 
 def stop_model() -> type[schema.StopSection]:
@@ -81,7 +81,7 @@ def _from_file(field: dataclasses.Field[Any], value: Any) -> Any:
     return float(turned) if np.ndim(turned) == 0 else tuple(turned.tolist())
 
 
-@lru_cache(maxsize=None)
+@cache
 def _extended(base: type[Any], cls: type[Any]) -> type[Any]:
     """Return a section with the fields of a dataclass as further keys."""
     hints = typing.get_type_hints(cls, include_extras=True)
@@ -109,7 +109,7 @@ def section_keys(data: Mapping[str, Any], path: tuple[str | int, ...]) -> list[s
     """Return the keys that are known in a section, given what the file names there."""
     model = model_at(data, path)
     if model is None:
-        return {(): list(SECTIONS), ("compare",): ["case"]}.get(path, [])
+        return ["case"] if path == ("compare",) else list(SECTIONS) if path == () else []
     extra = ["stop"] if path == ("simulation",) else []
     return [*model.model_fields, *extra]
 

@@ -31,7 +31,9 @@ def simulate(
         decimate: Keep every so many steps.
         progress: Called with the finished share.
     """
-    return run(build.setup(_loaded(scenario)), backend=backend, decimate=decimate, progress=progress)
+    return run(
+        build.setup(_loaded(scenario)), backend=backend, decimate=decimate, progress=progress
+    )
 
 
 def simulate_batch(

@@ -45,7 +45,8 @@ class Source:
         data = copy.deepcopy(self._parsed)
         for key, value in self.overrides.items():
             self._put(data, key, value)
-        return _tuples(data)
+        found: dict[str, Any] = _tuples(data)
+        return found
 
     @cached_property
     def _parsed(self) -> dict[str, Any]:
@@ -60,7 +61,8 @@ class Source:
         line = line or str(self.text.count("\n") + 1)
         lines = self.text.splitlines() or [""]
         text = lines[min(int(line), len(lines)) - 1].strip()
-        return Problem("TOML", text or MISSING, (what or message)[:1].lower() + (what or message)[1:], f"{self.name}:{line}")
+        said = what or message
+        return Problem("TOML", text or MISSING, said[:1].lower() + said[1:], f"{self.name}:{line}")
 
     def _put(self, data: dict[str, Any], key: str, value: Any) -> None:
         *sections, last = key.split(".")
@@ -68,7 +70,9 @@ class Source:
         for section in sections:
             table = table.setdefault(section, {})
             if not isinstance(table, dict):
-                raise ScenarioError([Problem(key, value, f"{section!r} is not a section", self.origin)])
+                raise ScenarioError(
+                    [Problem(key, value, f"{section!r} is not a section", self.origin)]
+                )
         table[last] = value
 
     @cached_property
@@ -80,13 +84,15 @@ class Source:
         dotted = ".".join(map(str, path))
         if any(dotted == key or dotted.startswith(key + ".") for key in self.overrides):
             return self.origin
+        if path not in self._lines and any(key.startswith(dotted + ".") for key in self.overrides):
+            return self.origin
         for end in range(len(path), 0, -1):
             if path[:end] in self._lines:
                 return f"{self.name}:{self._lines[path[:end]]}"
         return f"{self.name}:1" if self.text else self.name
 
     def value(self, path: toml.Path) -> Any:
-        """Return what stands at a path; raises KeyError, IndexError or TypeError if nothing does."""
+        """Return what stands at a path; KeyError, IndexError or TypeError if nothing does."""
         found: Any = self.data
         for part in path:
             found = found[part]
@@ -131,7 +137,9 @@ def parse_value(text: str, key: str) -> Any:
         return tomllib.loads(f"value = {text}")["value"]
     except tomllib.TOMLDecodeError:
         if any(c in text for c in "[]{}\"'\n="):
-            raise InputError(f"--set {key}", text, "a TOML value, such as 0.05, true, [1, 0, 0] or a word") from None
+            raise InputError(
+                f"--set {key}", text, "a TOML value, such as 0.05, true, [1, 0, 0] or a word"
+            ) from None
         return text
 
 

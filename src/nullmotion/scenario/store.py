@@ -14,7 +14,12 @@ from nullmotion.scenario.files import replacing
 from nullmotion.scenario.scenario import Scenario
 from nullmotion.sim.trajectory import Trajectory
 
-TRAJECTORY, SUMMARY, TABLE, REPORT = "trajectory.nc", "summary.json", "trajectory.csv", "report.html"
+TRAJECTORY, SUMMARY, TABLE, REPORT = (
+    "trajectory.nc",
+    "summary.json",
+    "trajectory.csv",
+    "report.html",
+)
 
 
 def write(
@@ -39,8 +44,12 @@ def write(
     target = Path(directory)
     owned = (TRAJECTORY, SUMMARY, TABLE, REPORT) if (target / TRAJECTORY).is_file() else ()
     with replacing(target, owned) as new:
-        write_netcdf(trajectory, new / TRAJECTORY, dataset.attributes(trajectory, scenario, law_file))
-        (new / SUMMARY).write_text(json.dumps(summary(trajectory, scenario), indent=2) + "\n", encoding="utf-8")
+        write_netcdf(
+            trajectory, new / TRAJECTORY, dataset.attributes(trajectory, scenario, law_file)
+        )
+        (new / SUMMARY).write_text(
+            json.dumps(summary(trajectory, scenario), indent=2) + "\n", encoding="utf-8"
+        )
         if csv:
             write_csv(trajectory, new / TABLE)
         if report:
@@ -67,7 +76,10 @@ def write_netcdf(trajectory: Trajectory, path: Path, attributes: dict[str, str])
             for name, size in zip(variable.dims, variable.values.shape, strict=True):
                 if name not in file.dimensions:
                     file.createDimension(name, size)
-            stored = file.createVariable(variable.name, "f8", variable.dims, zlib=variable.values.size > 1000, complevel=1)
+            packed = variable.values.size > 1000
+            stored = file.createVariable(
+                variable.name, "f8", variable.dims, zlib=packed, complevel=1
+            )
             stored.setncatts({"units": variable.units, "long_name": variable.long_name})
             stored[...] = variable.values
 
@@ -78,11 +90,22 @@ def write_csv(trajectory: Trajectory, path: Path) -> None:
     for variable in dataset.variables(trajectory):
         if variable.dims[0] != "time":
             continue
-        unit = {"1": "", "s": "_s", "rad": "_rad", "rad s-1": "_rad_s", "N m": "_Nm", "N m s": "_Nms"}[variable.units]
+        unit = {
+            "1": "",
+            "s": "_s",
+            "rad": "_rad",
+            "rad s-1": "_rad_s",
+            "N m": "_Nm",
+            "N m s": "_Nms",
+        }[variable.units]
         if variable.values.ndim == 1:
             columns["t_s" if variable.name == "time" else variable.name + unit] = variable.values
             continue
-        labels = _axis_labels(trajectory) if variable.dims[1] == "torque_axis" else range(variable.values.shape[1])
+        labels = (
+            _axis_labels(trajectory)
+            if variable.dims[1] == "torque_axis"
+            else range(variable.values.shape[1])
+        )
         for label, column in zip(labels, variable.values.T, strict=True):
             columns[f"{variable.name}_{label}{unit}"] = column
     table = np.stack(list(columns.values()), axis=1)
@@ -102,4 +125,6 @@ def to_xarray(trajectory: Trajectory, scenario: Scenario | None = None) -> Any:
 
     found = dataset.variables(trajectory)
     data = {v.name: (v.dims, v.values, {"units": v.units, "long_name": v.long_name}) for v in found}
-    return xarray.Dataset(data, attrs=dataset.attributes(trajectory, scenario)).set_coords(["torque_axes"])
+    return xarray.Dataset(data, attrs=dataset.attributes(trajectory, scenario)).set_coords(
+        ["torque_axes"]
+    )

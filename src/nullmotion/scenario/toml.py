@@ -59,7 +59,8 @@ def _section(header: re.Match[str], tables: dict[Path, int]) -> Path:
 
 def _statements(text: str) -> Iterator[tuple[int, str]]:
     """Yield each header or ``key = value`` with its line; a value may span lines."""
-    depth, start, line, pieces = 0, 1, 1, []
+    pieces: list[str] = []
+    depth, start, line = 0, 1, 1
     for token in _TOKEN.findall(text + "\n"):
         if token == "\n" and (depth == 0 or "".join(pieces).startswith("[")):
             if pieces:
@@ -110,7 +111,11 @@ def _table_lines(table: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[st
 
 
 def _is_table_list(value: Any) -> bool:
-    return isinstance(value, (list, tuple)) and bool(value) and all(isinstance(v, Mapping) for v in value)
+    return (
+        isinstance(value, (list, tuple))
+        and bool(value)
+        and all(isinstance(v, Mapping) for v in value)
+    )
 
 
 def _key(key: str) -> str:

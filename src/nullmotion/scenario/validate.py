@@ -7,6 +7,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from nullmotion import laws
 from nullmotion.errors import UnknownNameError
 from nullmotion.scenario import keys, schema, sections
 from nullmotion.scenario.problems import MISSING, Problem, ScenarioError
@@ -63,11 +64,17 @@ class Validator:
             return {}
         for key in data:
             if key not in sections.SECTIONS:
-                self.add((key,), MISSING, keys.hint(key, sections.SECTIONS).replace("key", "section", 1))
+                self.add(
+                    (key,), MISSING, keys.hint(key, sections.SECTIONS).replace("key", "section", 1)
+                )
         for key in _NEEDED:
             if key not in data:
                 self.add((key,), MISSING, "this section is missing")
-        found = {name: self._section((name,)) for name in sections.SECTIONS if name != "compare" and name in data}
+        found = {
+            name: self._section((name,))
+            for name in sections.SECTIONS
+            if name != "compare" and name in data
+        }
         found["compare"] = self._cases(data)
         found["stop"] = self._stop(data)
         return found
@@ -77,9 +84,15 @@ class Validator:
         kind = mission.get("kind") if isinstance(mission, dict) else None
         later = [key for key in _LATER_SECTIONS if key in data]
         if kind in LATER_KINDS:
-            self.add(("mission", "kind"), kind, 'this version of nullmotion flies "momentum-rate" only')
+            self.add(
+                ("mission", "kind"), kind, 'this version of nullmotion flies "momentum-rate" only'
+            )
         for key in later:
-            self.add((key,), MISSING, 'this version of nullmotion has no such section; it flies "momentum-rate" only')
+            self.add(
+                (key,),
+                MISSING,
+                'this version of nullmotion has no such section; it flies "momentum-rate" only',
+            )
         return bool(later) or kind in LATER_KINDS
 
     def _cases(self, data: Mapping[str, Any]) -> list[Any]:
@@ -125,7 +138,7 @@ class Validator:
         if not isinstance(value, str):
             self.add((*path, key), value, "a text in quotes")
             return
-        known = sections.layout_names() if key == "layout" else sections.laws.names()
+        known = sections.layout_names() if key == "layout" else laws.names()
         self.add((*path, key), value, UnknownNameError(error.kind, value, known).allowed)
 
     def _collect(self, section: Path, error: ValidationError) -> None:

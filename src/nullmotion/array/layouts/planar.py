@@ -27,13 +27,18 @@ class Planar(Layout):
 
     def __post_init__(self) -> None:
         """Refuse an array without freedom to turn its momentum."""
-        if self.n < 3 or self.n % 1:
-            raise InputError("array.n", self.n, "a whole number from 3")
+        if self.n < 2 or self.n % 1:
+            raise InputError("array.n", self.n, "a whole number from 2")
 
     def axes(self) -> tuple[Any, Any]:
         """Return gimbal axes and spin axes."""
         return np.tile([0.0, 0.0, 1.0], (self.n, 1)), np.tile([1.0, 0.0, 0.0], (self.n, 1))
 
     def home(self) -> Any:
-        """Return evenly spread angles [rad]: no momentum, A A^T = (n/2) I."""
+        """Return evenly spread angles [rad]: no momentum, A A^T = (n/2) I.
+
+        Two CMGs are singular without momentum: they start at right angles instead.
+        """
+        if self.n == 2:
+            return np.array([-0.25 * np.pi, 0.25 * np.pi])
         return 2 * np.pi * np.arange(self.n) / self.n

@@ -48,7 +48,17 @@
     return span.firstChild;
   }
 
-  function entry(trace, toggle, withValue) {
+  // Pointing at an entry brings its curve out among the others.
+  function highlight(button, where) {
+    const show = (on) => where.forEach(([chart, i]) => {
+      const opacity = chart.figure.traces.map((_, j) => (on && j !== i ? 0.15 : 1));
+      Plotly.restyle(chart.box, { opacity });
+    });
+    button.addEventListener("mouseenter", () => show(true));
+    button.addEventListener("mouseleave", () => show(false));
+  }
+
+  function entry(trace, where) {
     const button = document.createElement("button");
     const name = document.createElement("span");
     const value = document.createElement("span");
@@ -56,26 +66,27 @@
     button.setAttribute("aria-pressed", "true");
     name.textContent = trace.name;
     value.className = "value";
-    button.append(sample(trace.line), name);
-    if (withValue) button.append(value);
+    button.append(sample(trace.line), name, value);
     button.addEventListener("click", () => {
       const visible = button.getAttribute("aria-pressed") !== "true";
       button.setAttribute("aria-pressed", String(visible));
-      toggle(visible);
+      where.forEach(([chart, i]) => Plotly.restyle(chart.box, { visible }, [i]));
     });
+    if (matchMedia("(hover: hover)").matches) highlight(button, where);
     return { button, value };
   }
 
   function ownLegend(place) {
     const chart = byKey.get(place.dataset.legend);
     chart.figure.traces.forEach((trace, i) => {
-      const show = (visible) => Plotly.restyle(chart.box, { visible }, [i]);
-      const { button, value } = entry(trace, show, true);
+      const { button, value } = entry(trace, [[chart, i]]);
       chart.readouts.push({ trace, value });
       place.append(button);
     });
   }
 
+  // Its values are those of the chart that was pointed at last.
+  const legends = [];
   function commonLegend(place) {
     const names = new Map();
     for (const chart of charts.filter((c) => c.figure.legend === place.dataset.commonLegend))
@@ -83,10 +94,15 @@
         if (!names.has(trace.name)) names.set(trace.name, { trace, where: [] });
         names.get(trace.name).where.push([chart, i]);
       });
-    for (const { trace, where } of names.values()) {
-      const show = (visible) => where.forEach(([chart, i]) => Plotly.restyle(chart.box, { visible }, [i]));
-      place.append(entry(trace, show, false).button);
-    }
+    const of = document.createElement("span");
+    of.className = "of";
+    place.append(of);
+    const entries = [...names.values()].map(({ trace, where }) => {
+      const { button, value } = entry(trace, where);
+      place.append(button);
+      return { where: new Map(where), value };
+    });
+    legends.push({ name: place.dataset.commonLegend, of, entries });
   }
 
   // ---- one cursor for all charts of a group ----
@@ -134,6 +150,16 @@
     }
   }
 
+  function placeCommon(chart, t) {
+    for (const { of, entries } of legends.filter((l) => l.name === chart.figure.legend)) {
+      of.textContent = `Values: ${chart.figure.title}, ${chart.box.layout.yaxis.title.text}`;
+      for (const { where, value } of entries) {
+        const trace = chart.figure.traces[where.get(chart)];
+        value.textContent = trace ? reading(array(trace.x), array(trace.y), t, scale(chart)) : "";
+      }
+    }
+  }
+
   const slider = document.getElementById("cursor");
   const clock = document.getElementById("cursor-time");
   let wanted = null;
@@ -145,6 +171,7 @@
       const [where, time] = wanted;
       wanted = null;
       for (const c of group(where)) place(c, time);
+      placeCommon(where, time);
       if (slider && where.figure.group) {
         const [from, to] = whole(where);
         slider.value = String(Math.round((1000 * (time - from)) / (to - from)));

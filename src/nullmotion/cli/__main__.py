@@ -1,0 +1,5 @@
+"""``python -m nullmotion.cli``."""
+
+from nullmotion.cli import main
+
+main()

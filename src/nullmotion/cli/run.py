@@ -1,0 +1,75 @@
+"""``nullmotion run``: one scenario, one law."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nullmotion.cli import options, screen
+
+if TYPE_CHECKING:
+    from nullmotion.scenario import Scenario
+    from nullmotion.sim import Trajectory
+
+
+def run(
+    scenario: options.ScenarioArgument,
+    out: options.Out = None,
+    settings: options.Settings = None,
+    law_file: options.LawFile = None,
+    csv: Annotated[bool, typer.Option("--csv", help="Write trajectory.csv too.")] = False,
+    seed: options.Seed = None,
+    backend: Annotated[str, typer.Option(help="auto, kernel (compiled) or python.")] = "auto",
+) -> None:
+    """Fly one scenario and store the run."""
+    names, text = options.load_law_file(law_file)
+    loaded = options.load(scenario, options.values(settings, seed), names)
+    target = out or Path("out") / loaded.name
+    trajectory = fly(loaded, backend)
+    write(trajectory, loaded, target, csv, text)
+    show(trajectory, loaded)
+    typer.echo(f"Results in {target} (open report.html); again with: nullmotion rerun {target}")
+
+
+def fly(scenario: Scenario, backend: str = "auto") -> Trajectory:
+    """Return the trajectory, with a progress bar if it takes long."""
+    from nullmotion.scenario.simulate import simulate
+
+    with screen.progress(f"Flying {scenario.name}") as progress:
+        return simulate(scenario, backend, progress=progress)  # type: ignore[arg-type]
+
+
+def write(
+    trajectory: Trajectory, scenario: Scenario, target: Path, csv: bool, law_file: str
+) -> None:
+    """Write all files of the run, the report included."""
+    from nullmotion.report.run import run_report
+    from nullmotion.scenario import store
+
+    def report(path: Path) -> Any:
+        text = scenario.source.effective_text()
+        return run_report(trajectory, path, scenario.title, text)  # type: ignore[arg-type]
+
+    store.write(trajectory, scenario, target, csv=csv, law_file=law_file, report=report)
+
+
+def show(trajectory: Trajectory, scenario: Scenario) -> None:
+    """Print the run's key numbers."""
+    found = trajectory.summary()
+    rows = [
+        ("Law", scenario.law.name),
+        (
+            "Stopped at",
+            "-" if trajectory.stopped_at_s is None else f"{trajectory.stopped_at_s:.6g} s",
+        ),
+        ("Stop reason", trajectory.stop_reason),
+        ("Final momentum", " ".join(f"{v:.4g}" for v in found["final_momentum"]) + " N m s"),
+        ("Least sigma_min", screen.number(found.get("min_sigma_min"))),
+        ("Off-axis torque, peak", screen.percent(found.get("max_off_axis_torque_fraction")) + " %"),
+        ("Largest rate step", screen.number(found.get("max_rate_step_rad_s")) + " rad/s"),
+        ("Status", ", ".join(found["status"])),
+        ("Backend", " ".join(filter(None, (trajectory.backend, trajectory.instruction_set)))),
+    ]
+    screen.console().print(screen.table(scenario.title, ("Quantity", "Value"), rows))
