@@ -7,10 +7,11 @@ PYTHONS := $(or $(PYTHON),python3 python3.13 python3.12 python3.11 python)
 PIP := $(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt
 INSTALL := $(PIP) --no-build-isolation -e
 PINS := pyproject.toml constraints.txt
+BENCHMARK := benchmarks/closed_loop/closed_loop.py
 MADE := build dist site docs/laws nullmotion-demo src/*.egg-info
 CACHES := .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis .benchmarks
 
-.PHONY: help demo test quick browser lint types docs examples wheel bench bench-quick ci setup clean distclean
+.PHONY: help demo test quick lint types docs examples wheel bench bench-quick ci setup clean distclean
 .DEFAULT_GOAL := help
 
 help: ## Show this list
@@ -34,7 +35,7 @@ types: $(VENV)/.dev ## Check types
 	@$(BIN)/mypy
 
 docs: $(VENV)/.dev ## Build the documentation into site/
-	@$(BIN)/mkdocs build --strict --quiet
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 	@echo "site/index.html"
 
 examples: $(VENV)/.made ## Run every script in examples/
@@ -48,10 +49,10 @@ wheel: $(VENV)/.dev ## Build source distribution and wheel into dist/
 	@ls dist/*
 
 bench: $(VENV)/.bench ## Run the benchmarks (takes a while; wants an idle machine)
-	@$(BIN)/python benchmarks/run.py $(ARGS)
+	@$(BIN)/python $(BENCHMARK) $(ARGS)
 
 bench-quick: $(VENV)/.bench ## Run the benchmarks on small sizes, to see that they run
-	@$(BIN)/python benchmarks/run.py --quick $(ARGS)
+	@$(BIN)/python $(BENCHMARK) --quick $(ARGS)
 
 ci: ## Run all checks, as continuous integration does
 	@bash .ci/run
@@ -77,7 +78,7 @@ $(VENV)/.made: $(PINS)
 	if ! $$python -c 'import ensurepip, venv' 2>/dev/null; then \
 	  echo "$$python cannot make virtual environments (Debian, Ubuntu: apt-get install python3-venv)." >&2; exit 1; \
 	fi; \
-	echo "Installing nullmotion into $(VENV) with $$($$python --version) (about a minute, once) ..."; \
+	echo "Installing nullmotion into $(VENV) with $$($$python --version) (once; a minute or two) ..."; \
 	[ -x $(BIN)/python ] || $$python -m venv $(VENV)
 	@$(PIP) setuptools
 	@$(INSTALL) .

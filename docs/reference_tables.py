@@ -127,9 +127,10 @@ def kind(entry: Mapping[str, Any]) -> str:
 
 def _list_kind(entry: Mapping[str, Any]) -> str:
     if "prefixItems" in entry:
-        return f"{len(entry['prefixItems'])} numbers"
+        return {2: "pair", 3: "triple"}.get(len(entry["prefixItems"]), "list")
     inner = kind(entry.get("items", {}))
-    return f"list of: {inner}"
+    many = inner.replace("number", "numbers", 1) if "number" in inner else f"{inner}s"
+    return f"list of {many}"
 
 
 def public_names() -> Iterator[str]:

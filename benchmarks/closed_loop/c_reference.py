@@ -22,7 +22,12 @@ from workload import Array, Batch
 
 HERE = Path(__file__).parent
 SYMBOL = {"sr": "reference_sr", "sr+gradient": "reference_gradient", "svd": "reference_svd"}
-TILE = {"sr": 2, "sr+gradient": 2, "svd": 3}  # vectors that advance together: the fastest measured
+TILE = {  # vectors that advance together: the fastest measured, per width and law
+    8: {"sr": 1, "sr+gradient": 1, "svd": 3},
+    4: {"sr": 2, "sr+gradient": 2, "svd": 3},
+    1: {"sr": 3, "sr+gradient": 2, "svd": 3},
+}
+EXACT = ("-DEXACT_RSQRT",)  # IEEE square root and division where v_rsqrt, v_reciprocal are used
 FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-ffp-contract=fast", "-shared", "-fPIC")
 SCHEDULING = ("-fschedule-insns", "-fsched-pressure")  # GCC only: +15 % for the sr laws
 SCALAR = ("-fno-tree-vectorize", "-fno-tree-slp-vectorize")
@@ -91,11 +96,20 @@ def padded(rows: Array, lanes: int) -> Array:
     return np.ascontiguousarray(np.pad(rows, ((0, 0), (0, missing)), mode="edge"))
 
 
-def run(law: str, q: Array, omega: Array, delta: Array, steps: int, width: int = 0) -> Batch:
-    """Final states after ``steps`` steps; width 0 is the CPU's own."""
+def run(
+    law: str,
+    q: Array,
+    omega: Array,
+    delta: Array,
+    steps: int,
+    width: int = 0,
+    extra: tuple[str, ...] = (),
+) -> Batch:
+    """Final states after ``steps`` steps; width 0 is the CPU's own, ``extra`` compiler flags."""
     width = width or native_width()
-    lib, n = library(width, TILE[law]), q.shape[1]
-    state = [padded(x, TILE[law] * width) for x in (q, omega, delta)]
+    tile = TILE[width][law]
+    lib, n = library(width, tile, extra), q.shape[1]
+    state = [padded(x, tile * width) for x in (q, omega, delta)]
     pointers = [x.ctypes.data_as(DOUBLES) for x in state]
     size = ctypes.c_long(state[0].shape[1])
     getattr(lib, SYMBOL[law])(*pointers, size, ctypes.c_long(steps))

@@ -48,16 +48,16 @@ class Entry:
     rates: dict[str, list[float]] = field(default_factory=dict)  # law -> million steps/s per round
 
 
-def c_entry(name: str, width: int, runs: int) -> Entry:
+def c_entry(name: str, width: int, runs: int, extra: tuple[str, ...] = ()) -> Entry:
     """The hand-written C at one width, compiled now."""
     try:
         for law in workload.LAWS:
-            c_reference.library(width, c_reference.TILE[law])
+            c_reference.library(width, c_reference.TILE[width][law], extra)
     except c_reference.NoCompilerError as error:
         return Entry(name, None, 0, 0, f"not built: {error}"[:100])
 
     def run(law: str, q: Array, omega: Array, delta: Array, steps: int) -> Batch:
-        return c_reference.run(law, q, omega, delta, steps, width)
+        return c_reference.run(law, q, omega, delta, steps, width, extra)
 
     return Entry(name, run, runs, 1000)
 
@@ -78,7 +78,7 @@ def nullmotion_entry() -> Entry:
 def numba_entry() -> Entry:
     """Numba, if installed."""
     try:
-        import numba_loop  # noqa: PLC0415
+        import numba_loop
     except ImportError:
         return Entry("Numba, batch", None, 0, 0, "not installed")
     return Entry("Numba, batch", numba_loop.run, 24, 1000)
@@ -87,7 +87,7 @@ def numba_entry() -> Entry:
 def basilisk_entry() -> Entry:
     """Basilisk, if installed; a richer model, so its states are not compared."""
     try:
-        import basilisk_loop  # noqa: PLC0415
+        import basilisk_loop
     except ImportError:
         return Entry("Basilisk", None, 0, 0, "not installed", compared=False)
     basilisk_loop.check()
@@ -106,6 +106,7 @@ def entries() -> list[Entry]:
     width = c_reference.native_width()
     found = [c_entry(YARDSTICK, width, 960)]
     if width == 8:
+        found.append(c_entry("C, SIMD, IEEE sqrt and /", width, 960, c_reference.EXACT))
         found.append(c_entry("C, AVX2", 4, 480))
     found += [c_entry("C, scalar build", 1, 96), nullmotion_entry(), numba_entry()]
     found += [Entry("NumPy, one run", numpy_loop.run, 1, 100), basilisk_entry()]

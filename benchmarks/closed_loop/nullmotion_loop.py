@@ -1,19 +1,104 @@
-"""PLACE TO FILL: the closed loop through nullmotion's own compiled kernel.
+"""The workload on nullmotion: plain source for one run, traced and compiled to a SIMD loop.
 
-The runner calls ``build(law, lanes)`` once per law ("sr", "sr+gradient", "svd"; see workload.py
-for the model and its constants) and times what it returns. ``lanes`` is a hint, 0 for the CPU's
-own width. As long as ``build`` raises NotImplementedError its row reads 'not built'.
+The spacecraft stands here as plain functions; the array, the laws, the small linear
+algebra and the loop kernel are the package's own.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any, NamedTuple
 
-from workload import Array, Batch
+import numpy as np
+import workload as w
 
-Loop = Callable[[Array, Array, Array, int], Batch]
+from nullmotion import linalg, ops
+from nullmotion.array.model import CmgArray
+from nullmotion.compile.loop import Loop, LoopKernel, Stage
+from nullmotion.compile.tape import unguarded
 
 
-def build(law: str, lanes: int = 0) -> Loop:
-    """The kernel of ``law``: (q 4 x n, omega 3 x n, delta 4 x n, steps) -> final states."""
-    raise NotImplementedError("nullmotion_loop.build is to be filled")
+class State(NamedTuple):
+    """Attitude, body rate, gimbal angles."""
+
+    q: Any
+    omega: Any
+    delta: Any
+
+
+def steering(law: str, array: CmgArray, delta: Any, hdot: Any) -> Any:
+    """Return gimbal rates by one of the three laws."""
+    a = array.jacobian(delta)
+    if law == "svd":
+        svd = linalg.svd(a)
+        s3 = svd.s[2]
+        damped = s3 / (s3 * s3 + 0.01 * ops.exp(-10.0 * s3 * s3))
+        gains = np.array([1.0 / svd.s[0], 1.0 / svd.s[1], damped])
+        return svd.v @ (gains * (svd.u.T @ hdot))
+    gram = a @ a.T
+    adj = linalg.adjugate(gram)
+    det = gram[0] @ adj[:, 0]
+    damped = gram + 0.01 * ops.exp(-10.0 * det) * np.eye(3)
+    if law == "sr":
+        return a.T @ linalg.solve(damped, hdot)
+    momenta = array.rotor_momenta(delta)
+    gradient = np.array([-2.0 * (momenta[i] @ (adj @ a[:, i])) for i in range(4)])
+    null = 0.5 * gradient
+    return a.T @ linalg.solve(damped, hdot - a @ null) + null
+
+
+def _derivative(array: CmgArray, rates: Any, q: Any, omega: Any, delta: Any) -> tuple[Any, Any]:
+    momentum = w.INERTIA * omega + array.momentum(delta)
+    torque = -linalg.cross(omega, momentum) - array.jacobian(delta) @ rates
+    x, y, z = 0.5 * omega
+    q_dot = np.array([
+        -q[1] * x - q[2] * y - q[3] * z,
+        q[0] * x + q[2] * z - q[3] * y,
+        q[0] * y - q[1] * z + q[3] * x,
+        q[0] * z + q[1] * y - q[2] * x,
+    ])
+    return q_dot, torque * (1.0 / w.INERTIA)
+
+
+def loop(law: str) -> Loop:
+    """Return the closed loop of one law."""
+    array = CmgArray(w.GIMBAL_AXES, w.SPIN_AXES, 1.0, w.RATE_MAX)
+    dt = w.DT
+
+    def step(k: Any, row: Any, s: State, p: State) -> State:
+        flip = ops.where(ops.less(s.q[0], 0.0), -1.0, 1.0)
+        wanted = -(w.KP * flip) * s.q[1:] - w.KW * s.omega
+        hdot = -wanted - linalg.cross(s.omega, array.momentum(s.delta))
+        rates = array.limited(steering(law, array, s.delta, hdot))
+        middle, end = s.delta + (0.5 * dt) * rates, s.delta + dt * rates
+        a, b = _derivative(array, rates, s.q, s.omega, s.delta)
+        with unguarded():  # between two guarded angles
+            c, d = _derivative(array, rates, s.q + 0.5 * dt * a, s.omega + 0.5 * dt * b, middle)
+            e, f = _derivative(array, rates, s.q + 0.5 * dt * c, s.omega + 0.5 * dt * d, middle)
+            g, h = _derivative(array, rates, s.q + dt * e, s.omega + dt * f, end)
+        q = s.q + (dt / 6.0) * (a + 2.0 * (c + e) + g)
+        omega = s.omega + (dt / 6.0) * (b + 2.0 * (d + f) + h)
+        return State(q * (1.0 / ops.sqrt(q @ q)), omega, end)
+
+    example = State(np.zeros(4), np.zeros(3), np.zeros(4))
+    return Loop(lambda p: p, (Stage(step),), lambda s, p: s, example, (True,) * 11)
+
+
+def build(law: str, width: int | None = None) -> Callable[[Any, Any, Any, int], w.Batch]:
+    """Return a compiled batch function (q, omega, delta, steps) -> final states."""
+    kernel = LoopKernel(loop(law), width=width)
+    none = np.zeros(1)
+
+    def run(q: Any, omega: Any, delta: Any, steps: int) -> w.Batch:
+        runs = q.shape[1]
+        padded = -(-runs // kernel.width) * kernel.width
+        values = np.empty((11, padded))
+        values[:, :runs] = np.concatenate([q, omega, delta])
+        values[:, runs:] = values[:, runs - 1 : runs]
+        state = np.empty((kernel.carried, padded))
+        out = np.empty((kernel.outputs + len(kernel.flags), padded))
+        kernel.run(state, values, none, none, out, 0, padded, 0, steps, True)
+        return w.Batch(out[:4, :runs], out[4:7, :runs], out[7:11, :runs])
+
+    run.kernel = kernel  # type: ignore[attr-defined]
+    return run

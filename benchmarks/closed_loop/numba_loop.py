@@ -17,7 +17,7 @@ LAMBDA0, SLOPE, GAIN = w.LAMBDA0, w.LAMBDA_SLOPE, w.GRADIENT_GAIN
 CODE = {law: i for i, law in enumerate(w.LAWS)}
 
 
-@njit
+@njit(cache=True)
 def kinematics(delta, h, a):
     """h_i in the columns of h, a_i in those of a."""
     for i in range(4):
@@ -27,7 +27,7 @@ def kinematics(delta, h, a):
             a[k, i] = H0 * (T[k, i] * c - S[k, i] * s)
 
 
-@njit
+@njit(cache=True)
 def adjugate(m, g):
     """G = adj(m) of a symmetric 3 x 3 matrix; returns det(m)."""
     g[0, 0] = m[1, 1] * m[2, 2] - m[1, 2] * m[1, 2]
@@ -39,7 +39,7 @@ def adjugate(m, g):
     return m[0, 0] * g[0, 0] + m[0, 1] * g[0, 1] + m[0, 2] * g[0, 2]
 
 
-@njit
+@njit(cache=True)
 def gram(a, m):
     """M = A A^T."""
     for k in range(3):
@@ -49,7 +49,7 @@ def gram(a, m):
             )
 
 
-@njit
+@njit(cache=True)
 def law_sr(a, h, hdot, with_gradient, rates, grad, m, g):
     """Singularity-robust inverse, with the gradient's null motion if asked."""
     gram(a, m)
@@ -74,7 +74,7 @@ def law_sr(a, h, hdot, with_gradient, rates, grad, m, g):
         rates[i] = a[0, i] * y0 + a[1, i] * y1 + a[2, i] * y2 + grad[i]
 
 
-@njit
+@njit(cache=True)
 def law_svd(a, hdot, rates):
     """Singular direction avoidance on LAPACK's SVD."""
     u, s, vt = np.linalg.svd(a, False)
@@ -87,7 +87,7 @@ def law_svd(a, hdot, rates):
             rates[i] += gain * vt[k, i]
 
 
-@njit
+@njit(cache=True)
 def derivative(x, h, a, rates, k):
     """K = d/dt (q, omega, delta); h and a at x's gimbal angles."""
     w0, w1, w2 = x[4], x[5], x[6]
@@ -108,7 +108,7 @@ def derivative(x, h, a, rates, k):
     k[6] = (l0 * w1 - l1 * w0 - u2) / J[2]
 
 
-@njit
+@njit(cache=True)
 def command(x, h, a, law, rates, hdot, grad, m, g):
     """Quaternion feedback, law, common scaling to the rate limit."""
     kp = -KP if x[0] < 0.0 else KP
@@ -128,7 +128,7 @@ def command(x, h, a, law, rates, hdot, grad, m, g):
             rates[i] *= RATE_MAX / peak
 
 
-@njit
+@njit(cache=True)
 def run_one(x, law, steps):
     """``steps`` steps of one run, in place."""
     h, a, k = np.empty((3, 4)), np.empty((3, 4)), np.empty(11)
@@ -154,7 +154,7 @@ def run_one(x, law, steps):
             x[i] = total[i] / norm
 
 
-@njit
+@njit(cache=True)
 def run_batch(states, law, steps):
     """All runs, one after the other."""
     for r in range(states.shape[0]):

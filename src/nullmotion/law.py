@@ -14,7 +14,7 @@ from nullmotion.errors import InputError
 
 
 class Claim(StrEnum):
-    """A promise that the contract tests hold a law to, on every layout it supports."""
+    """A promise that the contract tests hold a law to, as created by default, on every layout."""
 
     EXACT_TORQUE = "A delta_dot = hdot at regular states"
     FINITE = "finite rates at every state, singular ones included"
@@ -99,7 +99,9 @@ class Law:
         raise NotImplementedError
 
 
-def check_parameters(law: Law, positive: Sequence[str] = (), not_negative: Sequence[str] = ()) -> None:
+def check_parameters(
+    law: Law, positive: Sequence[str] = (), not_negative: Sequence[str] = ()
+) -> None:
     """Refuse parameters that are not finite numbers of their sign; make whole numbers floats.
 
     Args:
@@ -118,7 +120,8 @@ def check_parameters(law: Law, positive: Sequence[str] = (), not_negative: Seque
         allowed = f"a finite number {'above' if key in positive else 'from'} 0"
         for part in parts:
             number = isinstance(part, (int, float, np.number)) and not isinstance(part, bool)
-            if not (number and np.isfinite(part) and (part > 0 or (part == 0 and key in not_negative))):
+            least_is_zero = key in not_negative
+            if not (number and np.isfinite(part) and (part > 0 or (least_is_zero and part == 0))):
                 raise InputError(f"law.{key}", value, allowed)
         floats = tuple(float(part) for part in parts)
         object.__setattr__(law, key, floats if isinstance(value, (tuple, list)) else floats[0])

@@ -13,7 +13,7 @@ Matrix = Any
 
 _SWEEPS = {1: 0, 2: 2, 3: 4}  # one-sided Jacobi on m x m: to the last bit (design/svd_sweeps.py)
 _ORTHOGONAL = 1e-28  # squared cosine of two rows below which their product is rounding
-_TINY = 1e-300
+_TINY = 1e-150  # its square is still a normal number
 _RANK = 4e-16  # a second singular value below this share of the first is rounding
 
 
@@ -163,12 +163,19 @@ def _rotated(x: Matrix, y: Matrix, n: int) -> tuple[Matrix, Matrix]:
     """Rotate two rows so that their first n entries become orthogonal."""
     xx, yy, xy = x[:n] @ x[:n], y[:n] @ y[:n], x[:n] @ y[:n]
     coupling = ops.where(ops.less(_ORTHOGONAL * (xx * yy), xy * xy), 2.0 * xy, 0.0)
-    gap = yy - xx
-    t = coupling / (ops.absolute(gap) + ops.sqrt(gap * gap + coupling * coupling) + _TINY)
-    t = ops.where(ops.less(gap, 0.0), -t, t)
-    c = 1.0 / ops.sqrt(1.0 + t * t)
-    s = c * t
+    c, s = _rotation(yy - xx, coupling)
     return c * x - s * y, s * x + c * y
+
+
+def _rotation(gap: Any, coupling: Any) -> tuple[Any, Any]:
+    """Return cosine and sine of the smaller angle that decouples two vectors.
+
+    tan(2 angle) = coupling / gap, with gap = y.y - x.x and coupling = 2 x.y.
+    """
+    square = gap * gap + coupling * coupling
+    p = ops.absolute(gap) + square * ops.rsqrt(square) + _TINY
+    w = ops.rsqrt(p * p + coupling * coupling)
+    return p * w, ops.where(ops.less(gap, 0.0), -coupling, coupling) * w
 
 
 def _householder(a: Matrix) -> tuple[Matrix, Matrix]:
@@ -181,7 +188,7 @@ def _householder(a: Matrix) -> tuple[Matrix, Matrix]:
         alpha = ops.where(ops.less(x[0], 0.0), 1.0, -1.0) * norm(x)
         v = x.copy()
         v[0] = x[0] - alpha
-        beta = 2.0 / (v @ v + _TINY)
+        beta = 2.0 / (v @ v + _TINY * _TINY)
         reflections.append((k, v, beta))
         for i in range(k + 1, m):
             row = np.array(work[i][k:])
@@ -202,11 +209,7 @@ def _jacobi(w: Matrix) -> tuple[Matrix, Matrix]:
     for _ in range(_SWEEPS[m]):
         for p, q in combinations(range(m), 2):
             x, y = both[:m, p], both[:m, q]
-            gap, coupling = y @ y - x @ x, 2.0 * (x @ y)
-            t = coupling / (ops.absolute(gap) + ops.sqrt(gap * gap + coupling * coupling) + _TINY)
-            t = ops.where(ops.less(gap, 0.0), -t, t)
-            c = 1.0 / ops.sqrt(1.0 + t * t)
-            s = c * t
+            c, s = _rotation(y @ y - x @ x, 2.0 * (x @ y))
             left, right = both[:, p] * c - both[:, q] * s, both[:, p] * s + both[:, q] * c
             both = both.copy() if both.dtype != object else np.array(both)
             both[:, p], both[:, q] = left, right

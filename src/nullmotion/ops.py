@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from nullmotion.compile import elementary
 from nullmotion.compile import tape as _tape
 from nullmotion.compile.tape import Symbol
 
@@ -155,6 +156,13 @@ def log(x: Value) -> Value:
 def sqrt(x: Value) -> Value:
     """Return the square root."""
     return np.sqrt(x)
+
+
+def rsqrt(x: Value) -> Value:
+    """Return 1/sqrt(x) for x >= 0; 1e150 for x below 1e-300, so that x rsqrt(x) is 0 at 0."""
+    if is_symbolic(x):
+        return _elementwise(elementary.rsqrt, x)
+    return 1.0 / np.sqrt(np.maximum(x, 1e-300))
 
 
 def acos(x: Value) -> Value:

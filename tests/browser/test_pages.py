@@ -1,4 +1,4 @@
-"""Pages in a real browser: they draw, they ask for nothing, they fit a phone, charts move together."""
+"""Pages in a real browser: they draw, ask for nothing, fit a phone, move together."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ from nullmotion.report import run_report
 pytestmark = pytest.mark.browser
 
 playwright = pytest.importorskip("playwright.sync_api")
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+CHROMIUM = (
+    shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+)
 RANGES = "[...document.querySelectorAll('[data-chart]')].map(c => c.layout.xaxis.range.map(Number))"
 
 
@@ -32,7 +34,9 @@ def browser():
 @pytest.fixture(scope="module")
 def page_file(tmp_path_factory) -> Path:
     array = nm.layouts.pyramid(rate_limit=np.pi)
-    setup = sim.Setup(array, nm.laws.create("pseudo-inverse"), np.zeros(4), np.array([1.0, 1.0, 1.0]), steps=150)
+    setup = sim.Setup(
+        array, nm.laws.create("pseudo-inverse"), np.zeros(4), np.array([1.0, 1.0, 1.0]), steps=150
+    )
     return run_report(sim.run(setup), tmp_path_factory.mktemp("page") / "run.html", "Run", "[law]")
 
 
@@ -84,6 +88,8 @@ def test_legend_works_from_the_keyboard(browser, page_file):
     entry = page.locator(".legend button").first
     entry.focus()
     page.keyboard.press("Enter")
-    page.wait_for_function("document.querySelector('[data-chart=torque]').data[0].visible === false")
+    page.wait_for_function(
+        "document.querySelector('[data-chart=torque]').data[0].visible === false"
+    )
     assert entry.get_attribute("aria-pressed") == "false"
     page.close()

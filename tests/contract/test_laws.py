@@ -20,6 +20,7 @@ from nullmotion.errors import UnsupportedArrayError
 LARGEST_RATE = 2e4  # times |hdot| / mean momentum: what a bounded law may ask for
 RATE_LIMIT = np.pi
 
+
 @cache
 def array_of(layout: str) -> CmgArray:
     return layouts.create(layout, h0=1.0, rate_limit=RATE_LIMIT)
@@ -83,7 +84,9 @@ def many(
         return np.tile(np.array(tree.flatten(record), float), (len(delta), 1))
 
     clock = np.full(len(delta), t), np.full(len(delta), 0.01)
-    memory = tiled(start) if state is None else np.stack([*state, np.zeros(len(delta))], axis=1)[:, :-1]
+    memory = (
+        tiled(start) if state is None else np.stack([*state, np.zeros(len(delta))], axis=1)[:, :-1]
+    )
     rates, after = compiled(law.name, array.n, array.m)(
         delta, hdot, *clock, memory, tiled(law), tiled(array)
     )
@@ -157,7 +160,9 @@ def turned(array: CmgArray, rng: np.random.Generator) -> tuple[CmgArray, np.ndar
 def _rotation(rng: np.random.Generator, size: int) -> np.ndarray:
     q, r = np.linalg.qr(rng.normal(size=(size, size)))
     q = q * np.sign(np.diag(r))
-    return q * np.linalg.det(q) if size % 2 else q @ np.diag([1.0] * (size - 1) + [np.linalg.det(q)])
+    return (
+        q * np.linalg.det(q) if size % 2 else q @ np.diag([1.0] * (size - 1) + [np.linalg.det(q)])
+    )
 
 
 def close(a: Any, b: Any, tolerance: float = 1e-9) -> None:
@@ -182,13 +187,19 @@ def test_kernel_equals_plain(law: str, layout: str) -> None:
     steering, array = laws.create(law), array_of(layout)
     if not steering.traceable:
         pytest.skip("a host law")
-    delta, hdot = (np.concatenate(x) for x in zip(
-        [a[:3] for a in regular_states(array, 0.05)], [a[::190] for a in singular_states(array)],
-        strict=True,
-    ))
+    delta, hdot = (
+        np.concatenate(x)
+        for x in zip(
+            [a[:3] for a in regular_states(array, 0.05)],
+            [a[::190] for a in singular_states(array)],
+            strict=True,
+        )
+    )
     rates, _ = many(steering, array, delta, hdot, t=0.3)
     start = steering.init(array, delta[0])
-    plain = [step(steering, array, d, h, 0.3, 0.01, start)[0] for d, h in zip(delta, hdot, strict=True)]
+    plain = [
+        step(steering, array, d, h, 0.3, 0.01, start)[0] for d, h in zip(delta, hdot, strict=True)
+    ]
     close(rates, plain, 1e-8)
 
 

@@ -112,7 +112,9 @@ def test_roof6_planes() -> None:
 
 def test_planar_rotors() -> None:
     array = nm.layouts.planar(n=5)
-    assert array.m == 2 and np.allclose(rotors("planar", 0.4, n=5), [[np.cos(0.4), np.sin(0.4)]] * 5)
+    assert array.m == 2 and np.allclose(
+        rotors("planar", 0.4, n=5), [[np.cos(0.4), np.sin(0.4)]] * 5
+    )
 
 
 def test_triangle_columns_and_momentum() -> None:
@@ -176,4 +178,4 @@ def test_unknown_names_are_refused_with_the_nearest() -> None:
     with pytest.raises(nm.InputError, match="skew"):
         nm.layouts.create("pyramid", skw=0.3)
     with pytest.raises(AttributeError):
-        nm.layouts.octahedron  # noqa: B018
+        nm.layouts.octahedron

@@ -22,7 +22,7 @@ entries = st.floats(-1e3, 1e3).map(lambda x: x if abs(x) > 1e-3 else 0.0)
 def spread(rng: np.random.Generator, m: int, n: int, sigma: Any) -> np.ndarray:
     """Return a matrix with given singular values."""
     u = np.linalg.qr(rng.normal(size=(m, m)))[0]
-    v = np.linalg.qr(rng.normal(size=(n, m)))[0] if n >= m else np.linalg.qr(rng.normal(size=(m, m)))[0][:n]
+    v = np.linalg.qr(rng.normal(size=(max(m, n), m)))[0][:n]
     return (u * np.asarray(sigma)) @ v.T
 
 

@@ -31,16 +31,28 @@ def turning(steps=60, dt=0.02, rate_limit=np.pi, array=None):
     hdot = np.zeros((steps + 1, array.m))
     hdot[:, 0] = 2.0
     return SimpleNamespace(
-        t=t, delta=delta, rates=rates, hdot=hdot, torque=torque, momentum=array.momentum(delta),
+        t=t,
+        delta=delta,
+        rates=rates,
+        hdot=hdot,
+        torque=torque,
+        momentum=array.momentum(delta),
         measures={"sigma_min": np.ones(steps + 1), "sqrt_det_AAT": np.ones(steps + 1)},
-        eram=np.ones_like(delta), metrics={"min_sigma_min": 1.0}, stopped_at_s=None, stop_reason="end of run",
-        status=[], backend="python", setup=SimpleNamespace(array=array, law=nm.laws.create("pi"), dt=dt, stop=()),
+        eram=np.ones_like(delta),
+        metrics={"min_sigma_min": 1.0},
+        stopped_at_s=None,
+        stop_reason="end of run",
+        status=[],
+        backend="python",
+        setup=SimpleNamespace(array=array, law=nm.laws.create("pi"), dt=dt, stop=()),
     )
 
 
 def case(label, run, value=None):
     metrics = {} if run is None else {**run.metrics, "stopped_at_s": None}
-    return SimpleNamespace(label=label, law="pi", information=(), trajectory=run, metrics=metrics, value=value)
+    return SimpleNamespace(
+        label=label, law="pi", information=(), trajectory=run, metrics=metrics, value=value
+    )
 
 
 @pytest.mark.parametrize("suffix", STARTS)
@@ -69,7 +81,14 @@ def test_matplotlib_waits_for_the_first_figure():
 def test_six_panels_of_the_field():
     run = turning()
     made = [make(run) for make in panels.LITERATURE_PANELS]
-    assert [p.key for p in made] == ["torque", "momentum_norm", "rates", "angles", "residual", "measures"]
+    assert [p.key for p in made] == [
+        "torque",
+        "momentum_norm",
+        "rates",
+        "angles",
+        "residual",
+        "measures",
+    ]
     assert all("[" in p.y_title and p.y_title.endswith("]") for p in made)
     np.testing.assert_allclose(made[3].curves[1].y, np.degrees(run.delta[:, 1]))
 
@@ -82,7 +101,9 @@ def test_asked_torque_is_dashed_and_of_its_axis_colour():
 
 def test_rate_limit_is_drawn_when_near_and_said_when_far():
     near = panels.rates(turning(rate_limit=0.6))
-    assert {round(level.value, 6) for level in near.levels} == {round(s * np.degrees(0.6), 6) for s in (1, -1)}
+    assert {round(level.value, 6) for level in near.levels} == {
+        round(s * np.degrees(0.6), 6) for s in (1, -1)
+    }
     far = panels.rates(turning(rate_limit=10.0))
     assert far.levels == () and "limit" in far.note
     assert panels.rates(turning(rate_limit=np.inf)).levels == ()
@@ -135,7 +156,11 @@ def test_curves_over_a_varied_value_are_in_order():
     runs = [case("a", turning(), v) for v in (3.0, 1.0, 2.0)]
     for i, one in enumerate(runs):
         one.metrics["min_sigma_min"] = float(i)
-    panel = next(p for p in varied_panels(SimpleNamespace(cases=runs, varied="k")) if p.key == "varied_min_sigma_min")
+    panel = next(
+        p
+        for p in varied_panels(SimpleNamespace(cases=runs, varied="k"))
+        if p.key == "varied_min_sigma_min"
+    )
     np.testing.assert_array_equal(panel.curves[0].x, [1.0, 2.0, 3.0])
     np.testing.assert_array_equal(panel.curves[0].y, [1.0, 2.0, 0.0])
 
@@ -164,4 +189,6 @@ def test_labels_stay_inside_the_sheet():
     figure.draw_without_rendering()
     box = figure.get_tightbbox()
     width, height = figure.get_size_inches()
-    assert box.x0 >= -0.01 and box.y0 >= -0.01 and box.x1 <= width + 0.01 and box.y1 <= height + 0.01
+    assert (
+        box.x0 >= -0.01 and box.y0 >= -0.01 and box.x1 <= width + 0.01 and box.y1 <= height + 0.01
+    )

@@ -47,16 +47,27 @@ def flown(hdot=(1.0, 0.0, 0.0), steps=400, dt=0.01, law="pseudo-inverse", stoppe
         hdot=np.tile(asked, (len(delta), 1)),
         torque=np.einsum("kmn,kn->km", jacobian, rates),
         momentum=array.momentum(delta),
-        measures={"sigma_min": s[:, -1], "sqrt_det_AAT": s.prod(axis=1), "momentum_state": 1.0 + s[:, -1]},
+        measures={
+            "sigma_min": s[:, -1],
+            "sqrt_det_AAT": s.prod(axis=1),
+            "momentum_state": 1.0 + s[:, -1],
+        },
         eram=np.abs(np.cos(delta)) / 2,
-        metrics={"min_sigma_min": float(s.min()), "max_off_axis_torque_fraction": 0.0123, "max_new_thing_s": np.nan},
+        metrics={
+            "min_sigma_min": float(s.min()),
+            "max_off_axis_torque_fraction": 0.0123,
+            "max_new_thing_s": np.nan,
+        },
         stopped_at_s=stopped,
         stop_reason="momentum_state below 0.2" if stopped else "end of run",
         status=[],
         backend="python",
         instruction_set="",
         setup=SimpleNamespace(
-            array=array, law=made, dt=dt, plant=None,
+            array=array,
+            law=made,
+            dt=dt,
+            plant=None,
             stop=(SimpleNamespace(metric=SimpleNamespace(name="momentum_state"), threshold=0.2),),
         ),
     )
@@ -75,8 +86,14 @@ def good():
 def case(label, run, reason="", value=None, law="pseudo-inverse"):
     metrics = {} if run is None else {**run.metrics, "stopped_at_s": run.stopped_at_s}
     return SimpleNamespace(
-        label=label, law=law, parameters_kind="defaults", information=(), trajectory=run, reason=reason,
-        metrics=metrics, value=value,
+        label=label,
+        law=law,
+        parameters_kind="defaults",
+        information=(),
+        trajectory=run,
+        reason=reason,
+        metrics=metrics,
+        value=value,
     )
 
 
@@ -118,10 +135,12 @@ def read(path: Path) -> Document:
 
 def pages(tmp_path, stuck, good):
     comparison = SimpleNamespace(
-        cases=(case("one", good), case("two", stuck), case("three", None, "needs a preview")), varied=None
+        cases=(case("one", good), case("two", stuck), case("three", None, "needs a preview")),
+        varied=None,
     )
     varied = SimpleNamespace(
-        cases=tuple(case(label, good, value=v) for v in (40.0, 50.0) for label in "ab"), varied="array.skew_deg"
+        cases=tuple(case(label, good, value=v) for v in (40.0, 50.0) for label in "ab"),
+        varied="array.skew_deg",
     )
     return [
         run_report(stuck, tmp_path / "run.html", "Run", "[law]"),
@@ -135,7 +154,13 @@ def test_pages_are_one_document_that_asks_for_nothing(tmp_path, stuck, good):
         document = read(path)
         assert document.open == []
         names = [name for name, _ in document.elements]
-        assert names.count("html") == names.count("body") == names.count("main") == names.count("h1") == 1
+        assert (
+            names.count("html")
+            == names.count("body")
+            == names.count("main")
+            == names.count("h1")
+            == 1
+        )
         for name, attributes in document.elements:
             assert name not in ("iframe", "object", "embed", "img", "base")
             assert "src" not in attributes and "srcset" not in attributes
@@ -143,7 +168,9 @@ def test_pages_are_one_document_that_asks_for_nothing(tmp_path, stuck, good):
             assert not any(key.startswith("on") for key in attributes)
         style = next(b for b in document.blocks if "color-scheme" in b)
         assert "@import" not in style and "url(" not in style
-        policy = next(a["content"] for n, a in document.elements if n == "meta" and "http-equiv" in a)
+        policy = next(
+            a["content"] for n, a in document.elements if n == "meta" and "http-equiv" in a
+        )
         assert policy.startswith("default-src 'none'") and "http" not in policy
         assert path.stat().st_size < 8_000_000
 
@@ -168,9 +195,13 @@ def test_numbers_in_a_page_are_those_of_the_run(tmp_path, stuck):
 
 
 def test_text_of_the_user_stays_text(tmp_path, good):
-    hostile = SimpleNamespace(**{**vars(good), "stop_reason": EVIL, "stopped_at_s": 1.5, "status": [EVIL]})
+    hostile = SimpleNamespace(
+        **{**vars(good), "stop_reason": EVIL, "stopped_at_s": 1.5, "status": [EVIL]}
+    )
     run = read(run_report(hostile, tmp_path / "run.html", EVIL, EVIL))
-    comparison = SimpleNamespace(cases=(case(EVIL, hostile), case("b", None, EVIL, law=EVIL)), varied=None)
+    comparison = SimpleNamespace(
+        cases=(case(EVIL, hostile), case("b", None, EVIL, law=EVIL)), varied=None
+    )
     compared = read(compare_report(comparison, tmp_path / "compare.html", EVIL, EVIL))
     varied = SimpleNamespace(cases=(case(EVIL, good, value=EVIL),), varied=EVIL)
     over = read(compare_report(varied, tmp_path / "varied.html", EVIL))
@@ -204,7 +235,9 @@ def test_thinning_keeps_ends_extremes_and_gaps():
     assert kept_x[0] == 0 and kept_x[-1] == x[-1]
     assert np.nanmax(kept_y) == 9.0 and np.nanmin(kept_y) == -8.0 and np.isnan(kept_y).any()
     np.testing.assert_array_equal(kept_y, y[kept_x.astype(int)])
-    assert thinned(x[:50], y[:50], 1000)[0] is not None and len(thinned(x[:50], y[:50], 1000)[0]) == 50
+    assert (
+        thinned(x[:50], y[:50], 1000)[0] is not None and len(thinned(x[:50], y[:50], 1000)[0]) == 50
+    )
 
 
 def test_thinning_keeps_gaps_of_not_a_number_alone():
@@ -217,11 +250,17 @@ def test_verdicts(stuck, good):
     said = verdict(stuck)
     assert said.words.startswith("Stuck: delivers no torque from 1.1") and not said.useful
     assert verdict(good).words == "Ran to the end (1.5 s)"
-    stopped = SimpleNamespace(**{**vars(good), "stopped_at_s": 1.5, "stop_reason": "momentum_state below 0.2"})
+    stopped = SimpleNamespace(
+        **{**vars(good), "stopped_at_s": 1.5, "stop_reason": "momentum_state below 0.2"}
+    )
     assert verdict(stopped).words == "Stopped at 1.5 s: momentum state below 0.2"
     used_up = SimpleNamespace(**{**vars(stuck), "metrics": {"final_momentum_state": 0.05}})
-    assert verdict(used_up).words.startswith("Saturated: momentum used up") and verdict(used_up).useful
-    broken = SimpleNamespace(**{**vars(good), "delta": np.where(good.t[:, None] > 1.0, np.nan, good.delta)})
+    assert (
+        verdict(used_up).words.startswith("Saturated: momentum used up") and verdict(used_up).useful
+    )
+    broken = SimpleNamespace(
+        **{**vars(good), "delta": np.where(good.t[:, None] > 1.0, np.nan, good.delta)}
+    )
     assert verdict(broken).words == "Failed: not a number from 1.01 s on"
 
 
@@ -232,10 +271,18 @@ def test_a_run_without_command_is_shown(tmp_path):
 
 def test_a_run_that_broke_is_shown(tmp_path):
     run = flown((1.0, 1.0, 1.0), 50)
-    for history in (run.delta, run.rates, run.torque, run.momentum, run.eram, *run.measures.values()):
+    for history in (
+        run.delta,
+        run.rates,
+        run.torque,
+        run.momentum,
+        run.eram,
+        *run.measures.values(),
+    ):
         history[20:] = np.nan
     run.torque[10] = np.inf
-    assert "Failed: not a number from 0.2 s on" in read(run_report(run, tmp_path / "broken.html", "Broken")).text
+    document = read(run_report(run, tmp_path / "broken.html", "Broken"))
+    assert "Failed: not a number from 0.2 s on" in document.text
 
 
 def test_a_comparison_where_nothing_ran_is_a_table(tmp_path):
@@ -263,8 +310,15 @@ def test_best_is_said_in_words_not_by_colour_alone(tmp_path, good):
 @pytest.mark.parametrize(
     ("value", "written"),
     [
-        (0.0, "0"), (1 / 3, "0.3333"), (-2.5, "−2.5"), (1.25e-7, "1.25×10⁻⁷"), (np.float64(180.0), "180"),
-        (None, "–"), (np.nan, "–"), (np.inf, "∞"), ("text", "text"),
+        (0.0, "0"),
+        (1 / 3, "0.3333"),
+        (-2.5, "−2.5"),
+        (1.25e-7, "1.25×10⁻⁷"),
+        (np.float64(180.0), "180"),
+        (None, "–"),
+        (np.nan, "–"),
+        (np.inf, "∞"),
+        ("text", "text"),
     ],
 )
 def test_numbers_as_written(value, written):
@@ -282,7 +336,9 @@ def test_meaning_of_a_key():
 
 
 def test_markup_escapes_what_is_not_markup():
-    assert tag("p", "<b>", Markup("<i></i>"), class_='"') == '<p class="&quot;">&lt;b&gt;<i></i></p>'
+    assert (
+        tag("p", "<b>", Markup("<i></i>"), class_='"') == '<p class="&quot;">&lt;b&gt;<i></i></p>'
+    )
     assert tag("input", checked=True, hidden=False, id=None) == "<input checked>"
 
 
@@ -304,6 +360,7 @@ def test_missing_plotly_is_said(monkeypatch):
 
 
 def test_pages_need_no_heavy_import():
-    code = "import sys, nullmotion.report; print([m for m in ('plotly', 'matplotlib', 'xarray') if m in sys.modules])"
+    heavy = "('plotly', 'matplotlib', 'xarray')"
+    code = f"import sys, nullmotion.report; print([m for m in {heavy} if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

@@ -160,7 +160,7 @@ def test_turning_the_body_changes_nothing() -> None:
 
 
 def test_a_cmg_without_momentum_does_not_count() -> None:
-    array, delta = angles("orthogonal_pairs", 5, seed=7)
+    _, delta = angles("orthogonal_pairs", 5, seed=7)
     weak = nm.layouts.orthogonal_pairs(h0=[1.0, 1.0, 1.0, 1.0, 1.0, 0.0])
     left = weak.without(5)
     for name, value in measures(weak, delta).items():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -57,7 +58,7 @@ def _items(listed: str) -> list[str]:
 def _range(text: str, parts: list[str]) -> tuple[float, ...]:
     try:
         start, stop, step = (float(part) for part in parts)
-        count = int((stop - start) / step + 1e-9) + 1
+        count = math.floor((stop - start) / step + 1e-9) + 1
     except (ValueError, ZeroDivisionError, OverflowError):
         raise InputError("--vary", text, _FORM) from None
     if not 1 <= count <= MOST_VALUES:

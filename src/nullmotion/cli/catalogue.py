@@ -3,39 +3,34 @@
 from __future__ import annotations
 
 import json
-from enum import StrEnum
 from typing import Annotated, Any
 
 import typer
 
 from nullmotion.cli import screen
 
-
-class Kind(StrEnum):
-    """What can be listed."""
-
-    LAWS = "laws"
-    LAYOUTS = "layouts"
-    METRICS = "metrics"
-    PAPERS = "papers"
-    SCENARIOS = "scenarios"
+KINDS = ("laws", "layouts", "metrics", "papers", "scenarios")
 
 
 def list_(
-    kind: Annotated[Kind, typer.Argument(metavar="laws|layouts|metrics|papers|scenarios")],
+    kind: Annotated[str, typer.Argument(metavar="|".join(KINDS))],
     as_json: Annotated[bool, typer.Option("--json", help="As JSON.")] = False,
 ) -> None:
     """List the laws, layouts, metrics, papers or scenarios."""
+    from nullmotion.errors import UnknownNameError
+
+    if kind not in KINDS:
+        raise UnknownNameError("list", kind, KINDS)
     from nullmotion.cli import records
 
-    entries: list[dict[str, Any]] = getattr(records, kind.value)()
+    entries: list[dict[str, Any]] = getattr(records, kind)()
     if as_json:
         typer.echo(json.dumps(entries, indent=2))
         return
     columns = [key for key in (entries[0] if entries else {"name": ""}) if key not in records.LONG]
     rows = [[_cell(entry[key]) for key in columns] for entry in entries]
     heads = [key.replace("_", " ").capitalize() for key in columns]
-    screen.console().print(screen.table(f"{len(entries)} {kind.value}", heads, rows))
+    screen.console().print(screen.table(f"{len(entries)} {kind}", heads, rows))
 
 
 def _cell(value: Any) -> str:

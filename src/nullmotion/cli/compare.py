@@ -44,8 +44,8 @@ def compare(
     own, _ = options.load_law_file(law_file)
     loaded = options.load(scenario, options.values(settings, seed))
     names = None if laws is None else [name.strip() for name in laws.split(",")]
+    target = options.writable(out or Path("out") / f"{loaded.name}-compare")
     comparison = fly(loaded, names, vary, own)
-    target = out or Path("out") / f"{loaded.name}-compare"
     write(comparison, target, figure=True)
     console = screen.console()
     for made in comparison_table.tables(comparison):

@@ -24,6 +24,7 @@ def demo(
 ) -> None:
     """Fly all laws through an elliptic singularity."""
     scenario = options.load(_SCENARIO, {})
+    options.writable(out)
     console = screen.console()
     console.print(scenario.about.description)
     comparison = comparing.fly(scenario, None)

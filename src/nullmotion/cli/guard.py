@@ -12,6 +12,7 @@ from typing import Any
 from nullmotion.errors import InputError, MemoryLimitError, TraceError, UnsupportedArrayError
 
 DONE, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+_STOPPED = "interrupted; no result was written"
 _BAD_INPUT = (InputError, UnsupportedArrayError, TraceError, MemoryLimitError)
 _OS_BAD_INPUT = (
     FileNotFoundError,
@@ -29,9 +30,11 @@ def call(app: Any, arguments: Sequence[str]) -> int:
     try:
         status = app([a for a in arguments if a != "--debug"], standalone_mode=False)
         sys.stdout.flush()
+        if status == INTERRUPTED:  # typer turns Ctrl-C into this status
+            return _say(_STOPPED, INTERRUPTED, False)
         return status if isinstance(status, int) else DONE
     except KeyboardInterrupt:
-        return _say("interrupted; no result was written", INTERRUPTED, debug)
+        return _say(_STOPPED, INTERRUPTED, debug)
     except BrokenPipeError:  # the reader of our output has gone
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
@@ -42,7 +45,7 @@ def call(app: Any, arguments: Sequence[str]) -> int:
             error.show()
             return int(error.exit_code)
         if type(error).__name__ == "Abort":
-            return _say("interrupted; no result was written", INTERRUPTED, debug)
+            return _say(_STOPPED, INTERRUPTED, debug)
         if isinstance(error, OSError) and error.filename is not None:
             return _say(f"error: {error.filename}: {error.strerror}", _os_status(error), debug)
         text = " ".join(str(error).split())
@@ -51,11 +54,7 @@ def call(app: Any, arguments: Sequence[str]) -> int:
 
 
 def _os_status(error: OSError) -> int:
-    return (
-        BAD_INPUT
-        if isinstance(error, _OS_BAD_INPUT)
-        else FAILED
-    )
+    return BAD_INPUT if isinstance(error, _OS_BAD_INPUT) else FAILED
 
 
 def _say(message: str, status: int, debug: bool) -> int:

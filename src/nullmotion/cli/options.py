@@ -46,6 +46,18 @@ def values(settings: Sequence[str] | None, seed: int | None) -> dict[str, Any]:
     return found if seed is None else found | {"plant.seed": seed}
 
 
+def writable(target: Path) -> Path:
+    """Return a folder for results if it can be made and written to: told before the work."""
+    import os
+
+    from nullmotion.errors import InputError
+
+    there = next(p for p in (target, *target.absolute().parents) if p.exists())
+    if not there.is_dir() or not os.access(there, os.W_OK):
+        raise InputError("--out", str(target), "a folder that can be written to")
+    return target
+
+
 def load(scenario: str, settings: Mapping[str, Any], law_names: Sequence[str] = ()) -> Scenario:
     """Return the scenario; a law file's only law flies unless the scenario names one of the file's.
 

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 
 
 def paper(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="A name from `nullmotion list papers`.")],
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="A name from `nullmotion list papers`.")
+    ],
     out: options.Out = None,
     figures: Annotated[bool, typer.Option(help="Draw the figures too.")] = True,
 ) -> None:
@@ -22,7 +24,7 @@ def paper(
     from nullmotion.papers import registry
 
     entry = registry.get(name)
-    target = out or Path("out") / name
+    target = options.writable(out or Path("out") / name)
     with screen.progress(f"Computing {name}") as progress:
         result = entry().run(target, progress, figures=figures)
     show(result)
@@ -40,7 +42,14 @@ def show(result: PaperResult) -> None:
 
 
 def _row(cell: Cell) -> tuple[str, ...]:
-    return (cell.table, cell.row, cell.column, _text(cell.published), _text(cell.computed), cell.note)
+    return (
+        cell.table,
+        cell.row,
+        cell.column,
+        _text(cell.published),
+        _text(cell.computed),
+        cell.note,
+    )
 
 
 def _text(value: Any) -> str:

@@ -26,6 +26,8 @@ def rerun(
     from nullmotion.scenario import rerun as stored_runs
 
     stored = stored_runs.read(directory)
+    if out is not None:
+        options.writable(out)
     if stored.law_file:
         _register(stored.law_file)
     scenario = stored.scenario()

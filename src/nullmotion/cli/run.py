@@ -26,7 +26,7 @@ def run(
     """Fly one scenario and store the run."""
     names, text = options.load_law_file(law_file)
     loaded = options.load(scenario, options.values(settings, seed), names)
-    target = out or Path("out") / loaded.name
+    target = options.writable(out or Path("out") / loaded.name)
     trajectory = fly(loaded, backend)
     write(trajectory, loaded, target, csv, text)
     show(trajectory, loaded)

@@ -15,15 +15,18 @@ from collections.abc import Sequence
 
 from nullmotion.compile.tape import (
     Symbol,
-    bit,
     copysign,
     equal,
     exponent,
+    flip,
     fma,
     guard,
     maximum,
     minimum,
     power_of_two,
+    product,
+    raw_bit,
+    rsqrt_guess,
     select,
     significand,
     sqrt,
@@ -42,12 +45,12 @@ _LN2 = (0.6931471805598903, 5.497923018708371e-14)
 # fmt: off
 # polynomial coefficients, lowest power first
 _SIN = (
-    0.1666666666666663, 0.008333333333322116, 0.00019841269829588563, 2.7557313621079626e-06,
-    2.5050747719608165e-08, 1.5896227898748953e-10,
+    0.1666666666666663, -0.008333333333322116, 0.00019841269829588563, -2.7557313621079626e-06,
+    2.5050747719608165e-08, -1.5896227898748953e-10,
 )
 _COS = (
-    0.041666666666666595, 0.0013888888888873058, 2.480158728885259e-05, 2.7557314179558865e-07,
-    2.0875700878275175e-09, 1.1358538432369307e-11,
+    0.041666666666666595, -0.0013888888888873058, 2.480158728885259e-05, -2.7557314179558865e-07,
+    2.0875700878275175e-09, -1.1358538432369307e-11,
 )
 _EXP = (
     0.5000000000000011, 0.16666666666666413, 0.04166666666653027, 0.008333333333494203,
@@ -69,6 +72,7 @@ _ASIN = (
     0.022371758050551763, 0.0173597047758075, 0.013885235260529559, 0.012169213330680037,
     0.00652796681757796, 0.019528291282746336, -0.016224298376242133, 0.0319123042659134,
 )
+_RSQRT = (0.5, 0.375, 0.3125, 0.2734375)  # of (1 - e)**(-1/2)
 # fmt: on
 
 
@@ -91,30 +95,32 @@ def _paired(x: Symbol, coefficients: Sequence[float]) -> Symbol:
 
 
 def _reduce(x: Symbol) -> tuple[Symbol, Symbol, Symbol]:
-    """Return k, r, t with x = k π/2 + r - t, r in [-π/4, π/4] and t far smaller.
+    """Return b, r, t with x = k π/2 + r - t, r in [-π/4, π/4], t far smaller, k in b's low bits.
 
     x - k p0 is exact: both are multiples of 2**-53 and the difference is below 1.
     k p1 is exact: p1 has 33 bits. The last part leaves an error below 1e-37, while
     no double below 1e5 comes nearer to a multiple of π/2 than 6e-19.
     """
     guard("angle-range", abs(x) <= GUARDED_LIMIT)
-    k = fma(x, 2.0 / math.pi, _ROUND) - _ROUND
+    biased = fma(x, 2.0 / math.pi, _ROUND)
+    k = biased - _ROUND
     first = fma(k, -_PI_2[0], x)
     r = fma(k, -_PI_2[1], first)
     t = fma(k, _PI_2[2], fma(k, _PI_2[1], r - first))
-    return k, r, t
+    return biased, r, t
 
 
 def _quadrant(x: Symbol) -> tuple[Symbol, Symbol, Symbol]:
-    """Return k, sin(r - t) and cos(r - t) by polynomials in z = -(r - t)**2.
+    """Return b, sin(r - t) and cos r, by polynomials in z = r**2.
 
-    The signs (t subtracted, z negative, the added 0.0) make sin(-0) = -0 at no cost.
+    t is left out where it changes less than an ulp. The order of signs makes
+    sin(-0) = -0 at no cost.
     """
-    k, r, t = _reduce(x)
-    z = fma(-r, r, fma(r + r, t, 0.0))
-    sine = r + fma(r * z, _polynomial(z, _SIN), -t)
-    cosine = fma(z, fma(z, _polynomial(z, _COS), 0.5), 1.0)
-    return k, sine, cosine
+    biased, r, t = _reduce(x)
+    z = product(r, r)
+    sine = r - fma(product(r, z), _polynomial(z, _SIN), t)
+    cosine = fma(z, fma(z, _polynomial(z, _COS), -0.5), 1.0)
+    return biased, sine, cosine
 
 
 def sin(x: Symbol) -> Symbol:
@@ -122,19 +128,31 @@ def sin(x: Symbol) -> Symbol:
 
     Reduction by multiples of π/2 in 139 bits, odd polynomial of degree 13.
     """
-    k, sine, cosine = _quadrant(x)
-    result = select(bit(k, 0), cosine, sine)
-    return select(bit(k, 1), -result, result)
+    b, sine, cosine = _quadrant(x)
+    return flip(select(raw_bit(b, 0), cosine, sine), b, 1)
 
 
 def cos(x: Symbol) -> Symbol:
-    """Return cos x for |x| <= 1e5 rad; error below 0.90 ulp.
+    """Return cos x for |x| <= 1e5 rad; error below 1.30 ulp.
 
     Shares all but the last step with `sin`; even polynomial of degree 14.
     """
-    k, sine, cosine = _quadrant(x)
-    result = select(bit(k, 0), sine, cosine)
-    return select(bit(k + 1.0, 1), -result, result)
+    b, sine, cosine = _quadrant(x)
+    return flip(select(raw_bit(b, 0), sine, cosine), b + 1.0, 1)
+
+
+def rsqrt(x: Symbol) -> Symbol:
+    """Return 1/sqrt(x) for x >= 0, 1e150 below 1e-300; error below 1.2 ulp.
+
+    A guess from the bits, then steps of order five and three: products and sums alone,
+    which pipeline where division and square root do not, and the same on every CPU.
+    """
+    x = maximum(1e-300, x)
+    y = rsqrt_guess(x)
+    for series in (_RSQRT, _RSQRT[:2]):
+        e = fma(-(product(x, y)), y, 1.0)
+        y = fma(product(y, e), _polynomial(e, series), y)
+    return y
 
 
 def exp(x: Symbol) -> Symbol:

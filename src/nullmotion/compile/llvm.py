@@ -107,7 +107,7 @@ class Shape:
         return self.splat("double", hexadecimal(value))
 
 
-_PLACEHOLDER = re.compile(r"\{(bits|real|mask):([^}]+)\}")
+_PLACEHOLDER = re.compile(r"\{(bits|real|mask|shift):([^}]+)\}")
 
 
 @dataclass
@@ -165,6 +165,8 @@ def _instruction(program: Program, i: int, names: dict[int, str], shape: Shape, 
 
     def special(match: re.Match[str]) -> str:
         kind, text = match.groups()
+        if kind == "shift":
+            return shape.splat("i64", str(63 - int(program.nodes[operands[text]].value)))  # type: ignore[arg-type]
         if kind == "mask":
             return shape.splat("i64", str(1 << int(program.nodes[operands[text]].value)))  # type: ignore[arg-type]
         return shape.splat("double", hexadecimal(float(text))) if kind == "real" else shape.splat("i64", text)

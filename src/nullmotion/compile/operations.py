@@ -83,6 +83,23 @@ def _bit(a: Any, j: Any) -> Any:
     return ((raw >> np.asarray(j, float).astype(np.int64)) & 1).astype(bool)[()]
 
 
+def _raw_bit(a: Any, j: Any) -> Any:
+    return ((np.asarray(a, float).view(np.int64) >> np.int64(j)) & 1).astype(bool)[()]
+
+
+def _flip(a: Any, b: Any, j: Any) -> Any:
+    sign = np.asarray(b, float).view(np.uint64) << np.uint64(63 - int(j)) & np.uint64(1 << 63)
+    return (np.asarray(a, float).view(np.uint64) ^ sign).view(np.float64)[()]
+
+
+_RSQRT_MAGIC = 0x5FE6EB50C7B537A9  # halves the exponent: within 3.5 % of 1/sqrt
+
+
+def _rsqrt_guess(a: Any) -> Any:
+    raw = np.asarray(a, float).view(np.uint64)
+    return (np.uint64(_RSQRT_MAGIC) - (raw >> np.uint64(1))).view(np.float64)[()]
+
+
 def _binary(name: str, evaluate: Callable[..., Any], llvm: str, c: str, commutative: bool = False) -> Operation:
     return Operation(name, ("real", "real"), "real", evaluate, f"{{r}} = {llvm} {{V}} {{a}}, {{b}}", c, commutative)
 
@@ -172,6 +189,36 @@ _TABLE = (
         "{t2} = and {I} {t1}, {mask:b}\n"
         "{r} = icmp ne {I} {t2}, {bits:0}",
         "nm_bit({a}, {b})",
+    ),
+    Operation(
+        "raw_bit",
+        ("real", "real"),
+        "bool",
+        _raw_bit,
+        "{t0} = bitcast {V} {a} to {I}\n{t1} = and {I} {t0}, {mask:b}\n{r} = icmp ne {I} {t1}, {bits:0}",
+        "nm_raw_bit({a}, {b})",
+    ),
+    Operation(
+        "flip",
+        ("real", "real", "real"),
+        "real",
+        _flip,
+        "{t0} = bitcast {V} {b} to {I}\n"
+        "{t1} = shl {I} {t0}, {shift:c}\n"
+        f"{{t2}} = and {{I}} {{t1}}, {{bits:{1 << 63}}}\n"
+        "{t3} = bitcast {V} {a} to {I}\n"
+        "{t4} = xor {I} {t3}, {t2}\n"
+        "{r} = bitcast {I} {t4} to {V}",
+        "nm_flip({a}, {b}, {c})",
+    ),
+    _unary(
+        "rsqrt_guess",
+        _rsqrt_guess,
+        "{t0} = bitcast {V} {a} to {I}\n"
+        "{t1} = lshr {I} {t0}, {bits:1}\n"
+        f"{{t2}} = sub {{I}} {{bits:{_RSQRT_MAGIC}}}, {{t1}}\n"
+        "{r} = bitcast {I} {t2} to {V}",
+        "nm_rsqrt_guess({a})",
     ),
 )
 

@@ -461,6 +461,21 @@ def bit(k: Any, j: int) -> Any:
     return apply("bit", k, float(j))
 
 
+def raw_bit(a: Any, j: int) -> Any:
+    """Return bit j of a double's 64 bits."""
+    return apply("raw_bit", a, float(j))
+
+
+def flip(a: Any, b: Any, j: int) -> Any:
+    """Return a with its sign flipped where bit j of b's 64 bits is set."""
+    return apply("flip", a, b, float(j))
+
+
+def rsqrt_guess(a: Any) -> Any:
+    """Return 1/sqrt(a) within 3.5 %, from the bits of a normal positive number."""
+    return apply("rsqrt_guess", a)
+
+
 def is_odd(k: Any) -> Any:
     """Return whether a whole number is odd."""
     return bit(k, 0)

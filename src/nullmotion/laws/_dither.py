@@ -27,7 +27,7 @@ def check_dither(law: Any) -> None:
 
 
 def dither_matrix(m: int, size: Any, angle: Any, phase: Any) -> Any:
-    """Return E (m x m): ones, and e_k = size sin(angle + phase_k) in row i, column j, k = 3 - i - j.
+    """Return E (m x m): ones, and e_k = size sin(angle + phase_k) at (i, j), k = 3 - i - j.
 
     For m = 3, E = [[1, e3, e2], [e3, 1, e1], [e2, e1, 1]]; for m = 2 its upper left corner.
     """

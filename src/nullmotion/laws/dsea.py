@@ -10,7 +10,7 @@ import numpy as np
 
 from nullmotion import linalg, ops
 from nullmotion.array.model import CmgArray
-from nullmotion.array.momentum_state import command_direction, rotor_directions
+from nullmotion.array.momentum_state import command_direction, rotor_directions, working
 from nullmotion.law import Claim, Law, Observation, check_parameters, command_size
 
 _FLOOR = 1e-4  # of the other singular values, which vanish only where A loses two ranks
@@ -115,13 +115,12 @@ class DirectionalEscapeAvoidance(Law):
         """Return delta_s (Algorithm 1)."""
         e = command_direction(array, obs.hdot)
         against = -(rotor_directions(array, obs.delta) @ e)
-        inside = ops.where(ops.less(_TIE, against), 1.0, 0.0) * ops.where(
-            ops.less(0.0, array.h0), 1.0, 0.0
-        )
+        inside = ops.where(ops.less(_TIE, against), 1.0, 0.0) * working(array)
         size, common, least = self._sizes(array, obs)
         potential = ops.maximum(against, 0.0) * size
         share = self._onset(self.sigma_acp, rows.squares)
-        lost = share / (rows.squares + share) * (rows.u.T @ obs.hdot) / _nonzero(linalg.norm(obs.hdot))
+        along = (rows.u.T @ obs.hdot) / _nonzero(linalg.norm(obs.hdot))
+        lost = share / (rows.squares + share) * along
         magnitude = inside * (common * linalg.norm(lost)) * (potential * potential)
         arms = _anti_parallel(array, e) * (array.h0 / array.mean_momentum)[:, None]
         arms = arms * (inside * (common * size * size))[:, None]
@@ -142,7 +141,8 @@ class DirectionalEscapeAvoidance(Law):
         enough = ops.less_equal(least, tau)
         safe = ops.where(enough, tau, least)
         cube = safe * safe * safe
-        common = rate * ops.exp(self.xi * ops.log(safe / most)) * cube / (cube + least * least * least)
+        onset = cube / (cube + least * least * least)
+        common = rate * ops.exp(self.xi * ops.log(safe / most)) * onset
         size = tau * h if self.as_published else 1.0
         return size, ops.where(enough, common, 0.0), least
 
@@ -188,7 +188,9 @@ def _greedy(arms: Any) -> Any:
     return np.array(theta)
 
 
-def _guarded(theta: Any, arms: Any, inside: Any, magnitude: Any, least: Any, state: DseaState) -> Any:
+def _guarded(
+    theta: Any, arms: Any, inside: Any, magnitude: Any, least: Any, state: DseaState
+) -> Any:
     """Return the signs after the guard against chattering (Algorithm 2)."""
     gain = linalg.norm(state.theta @ arms) - linalg.norm(theta @ arms)
     change = ops.absolute(inside - state.inside).sum()

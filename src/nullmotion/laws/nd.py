@@ -65,7 +65,8 @@ class NonDirectionalNullMotion(Law):
         """Return least rates and null motion."""
         A = array.unit_jacobian(obs.delta)
         rows = linalg.rows(A)
-        rates = rows.solve(obs.hdot / array.mean_momentum, ops.maximum(rows.squares, _FLOOR * _FLOOR))
+        squares = ops.maximum(rows.squares, _FLOOR * _FLOOR)
+        rates = rows.solve(obs.hdot / array.mean_momentum, squares)
         minors = linalg.null_vector(A)
         length = linalg.norm(minors)
         z = minors / ops.where(ops.less(1e-12, length), length, 1.0)

@@ -18,7 +18,8 @@ _FLOOR = 1e-4  # of the other singular values, which vanish only where A loses t
 class SingularDirectionAvoidance(Law):
     """The singularity-robust inverse confined to the direction that needs it.
 
-        delta_dot = sum_{j<m} v_j (1/sigma_j) u_j^T hdot + v_m sigma_m/(sigma_m^2 + alpha) u_m^T hdot
+        delta_dot = sum_{j<m} v_j (1 / sigma_j) u_j^T hdot
+                    + v_m sigma_m / (sigma_m^2 + alpha) u_m^T hdot
         alpha     = alpha0 exp(-kappa det(A A^T))
 
     A = U S V^T and hdot are divided by the mean momentum: alpha0 and kappa have no unit.

@@ -100,15 +100,13 @@ class VectorControl(Law):
             ops.less(rows.squares[-1], limit), ops.less_equal(self.epsilon1, left)
         )
         q = ops.where(escape, rows.squares[-1] / limit, 1.0)
-        # sigma_m^2 -> sigma_c^3 / sigma_m turns 1/sigma_m into q / sigma_c; see _damped
-        damped = self._damped(rows, squares, escape)
-        r = rows.solve(obs.hdot / array.mean_momentum, damped)
+        r = rows.solve(obs.hdot / array.mean_momentum, self._damped(squares, escape))
         G = self._direction(array, obs, residual)
         null = self._null_motion(array, obs, r, G, rows.project_out(G, squares))
         rate = command_size(array, obs) if self.escape_rate is None else self.escape_rate
         return r + q * null + ((1.0 - q) * rate) * G, state
 
-    def _damped(self, rows: linalg.Rows, squares: Any, escape: Any) -> Any:
+    def _damped(self, squares: Any, escape: Any) -> Any:
         """Return squares whose last makes v_m sigma_m / square = v_m q / sigma_c on escape."""
         least = ops.sqrt(squares[-1])
         cubic = (self.sigma_c * self.sigma_c * self.sigma_c) / least
@@ -134,7 +132,9 @@ class VectorControl(Law):
         length = linalg.norm(amplitude if self.as_published else n)
         return n / ops.where(ops.less(0.0, length), length, 1.0)
 
-    def _null_motion(self, array: CmgArray, obs: Observation, r: Any, G: Any, projected: Any) -> Any:
+    def _null_motion(
+        self, array: CmgArray, obs: Observation, r: Any, G: Any, projected: Any
+    ) -> Any:
         """Return lambda z (Eqs 37, 38), (n,)."""
         cosine = rotor_directions(array, obs.delta) @ command_direction(array, obs.hdot)
         behind = 0.5 * np.pi - ops.acos(ops.clip(-cosine, -1.0, 1.0))

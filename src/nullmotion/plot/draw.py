@@ -62,7 +62,9 @@ def _name(axes: Any, value: float, label: str) -> None:
     )
 
 
-def sheet(panels: Sequence[Panel], columns: int = 2, title: str = "", common_legend: bool = False) -> Any:
+def sheet(
+    panels: Sequence[Panel], columns: int = 2, title: str = "", common_legend: bool = False
+) -> Any:
     """Return a matplotlib figure with the charts in a grid.
 
     Args:
@@ -88,7 +90,9 @@ def sheet(panels: Sequence[Panel], columns: int = 2, title: str = "", common_leg
         figure.suptitle(title, fontsize=10, fontweight="bold", x=0.01, ha="left")
     if common_legend:
         handles, names = _handles(grid)
-        figure.legend(handles, names, loc="outside lower center", ncols=_legend_columns(names, columns))
+        figure.legend(
+            handles, names, loc="outside lower center", ncols=_legend_columns(names, columns)
+        )
     return figure
 
 

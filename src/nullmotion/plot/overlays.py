@@ -22,7 +22,13 @@ def shown(cases: Sequence[Case]) -> list[tuple[int, Case]]:
 def overlay(cases: Sequence[Case], series: Series) -> tuple[Curve, ...]:
     """Return one curve a case."""
     return tuple(
-        Curve(case.label, case.trajectory.t, series(case.trajectory), palette.colour(i), palette.dash(i))
+        Curve(
+            case.label,
+            case.trajectory.t,
+            series(case.trajectory),
+            palette.colour(i),
+            palette.dash(i),
+        )
         for i, case in shown(cases)
     )
 

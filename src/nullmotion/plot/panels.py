@@ -83,7 +83,9 @@ def measures(run: Run) -> Panel:
     columns = np.stack([run.measures[name] for name in names], axis=1) if names else None
     curves = () if columns is None else bundle(run.t, columns, names)
     title = "Singularity measures"
-    return Panel("measures", title, "Measure [-]", curves, note=f"Zero at a singular state; {NORMALISED}.")
+    return Panel(
+        "measures", title, "Measure [-]", curves, note=f"Zero at a singular state; {NORMALISED}."
+    )
 
 
 def residual(run: Run) -> Panel:

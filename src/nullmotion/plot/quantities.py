@@ -51,8 +51,9 @@ def steady_direction(run: Run) -> np.ndarray | None:
 def torque_fractions(run: Run) -> tuple[np.ndarray, np.ndarray]:
     """Return the torque along the command and across it, as fractions of the command, (k,)."""
     size, unit = directions(run)
-    along = np.sum(run.torque * unit, axis=1)
-    across = np.linalg.norm(run.torque - along[:, None] * unit, axis=1)
+    torque = np.where(np.isfinite(run.torque), run.torque, np.nan)
+    along = np.sum(torque * unit, axis=1)
+    across = np.linalg.norm(torque - along[:, None] * unit, axis=1)
     scale = np.where(size > 0, size, np.nan)
     return along / scale, across / scale
 

@@ -15,7 +15,12 @@ VARIED_METRICS = (
     ("stopped_at_s", "Time to stop", "Time [s]", 1.0),
     ("final_momentum_reserve_Nms", "Momentum reserve at the end", "Reserve [N m s]", 1.0),
     ("max_off_axis_torque_fraction", "Off-axis torque, peak", "Share of command [%]", 100.0),
-    ("max_along_axis_torque_fraction", "Along-axis torque error, peak", "Share of command [%]", 100.0),
+    (
+        "max_along_axis_torque_fraction",
+        "Along-axis torque error, peak",
+        "Share of command [%]",
+        100.0,
+    ),
     ("max_rate_step_rad_s", "Largest rate step", "Step [rad/s]", 1.0),
     ("min_sigma_min", "Least sigma_min", "sigma_min [-]", 1.0),
 )
@@ -51,14 +56,18 @@ def tick_names(cases: Sequence[Any]) -> tuple[str, ...]:
 def series(cases: Sequence[Any], ticks: Sequence[str] = ()) -> list[Series]:
     """Return the cases of a varied comparison gathered by label, ascending in value."""
     labels = list(dict.fromkeys(case.label for case in cases))
-    return [_series(label, [case for case in cases if case.label == label], ticks) for label in labels]
+    return [
+        _series(label, [case for case in cases if case.label == label], ticks) for label in labels
+    ]
 
 
 def _series(label: str, cases: Sequence[Any], ticks: Sequence[str]) -> Series:
     x = np.array([ticks.index(str(case.value)) if ticks else case.value for case in cases], float)
     order = np.argsort(x, kind="stable")
     names = {name for case in cases for name in case.metrics}
-    columns = {name: np.array([_number(case.metrics.get(name)) for case in cases]) for name in names}
+    columns = {
+        name: np.array([_number(case.metrics.get(name)) for case in cases]) for name in names
+    }
     return Series(label, x[order], {name: column[order] for name, column in columns.items()})
 
 
@@ -67,12 +76,22 @@ def _number(value: Any) -> float:
 
 
 def _panel(
-    key: str, ticks: tuple[str, ...], laws: Sequence[Series], metric: str, title: str, y_title: str, factor: float
+    key: str,
+    ticks: tuple[str, ...],
+    laws: Sequence[Series],
+    metric: str,
+    title: str,
+    y_title: str,
+    factor: float,
 ) -> Panel:
     curves = tuple(
         Curve(
-            law.label, law.x, factor * law.metrics[metric],
-            palette.colour(i), palette.dash(i), marker=len(law.x) <= 30,
+            law.label,
+            law.x,
+            factor * law.metrics[metric],
+            palette.colour(i),
+            palette.dash(i),
+            marker=len(law.x) <= 30,
         )
         for i, law in enumerate(laws)
         if metric in law.metrics and np.isfinite(law.metrics[metric]).any()

@@ -6,13 +6,12 @@ import base64
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from html import escape
 from typing import Any
 
 import numpy as np
 
-from nullmotion.plot import palette
 from nullmotion.plot.view import Curve, Panel
+from nullmotion.report.layout import layout
 from nullmotion.report.markup import Markup, join, tag
 from nullmotion.report.thin import thinned
 
@@ -20,17 +19,6 @@ MOST_POINTS = 4000
 MOST_BYTES = 2_500_000  # of curves in one page, before base64; plotly.js itself is 4.8 MB
 LEAST_POINTS = 400
 _BYTES_PER_POINT = 12  # abscissa in double, ordinate in single precision
-
-_AXIS = {
-    "gridcolor": palette.GRID,
-    "linecolor": palette.QUIET,
-    "tickcolor": palette.QUIET,
-    "zeroline": False,
-    "showline": True,
-    "ticks": "outside",
-    "ticklen": 4,
-    "automargin": False,
-}
 
 
 @dataclass
@@ -68,14 +56,20 @@ class Charts:
             "legend": legend,
             "title": panel.title,
             "traces": [self._trace(curve) for curve in panel.curves],
-            "layout": _layout(panel),
+            "layout": layout(panel),
         }
         return tag(
             "figure",
             tag("figcaption", tag("h3", panel.title), panel.note and tag("p", panel.note)),
             "" if legend else tag("div", class_="legend", data_legend=panel.key),
-            tag("div", class_="plot", id=f"plot-{panel.key}", data_chart=panel.key, role="img",
-                aria_label=f"Chart: {panel.title}. {panel.y_title} over {panel.x_title}."),
+            tag(
+                "div",
+                class_="plot",
+                id=f"plot-{panel.key}",
+                data_chart=panel.key,
+                role="img",
+                aria_label=f"Chart: {panel.title}. {panel.y_title} over {panel.x_title}.",
+            ),
             class_="chart small" if small else "chart",
         )
 
@@ -87,7 +81,12 @@ class Charts:
             "x": self._array(x.astype("<f8")),
             "y": self._array(y.astype("<f4")),
             "mode": "lines+markers" if curve.marker else "lines",
-            "line": {"color": curve.colour, "dash": curve.dash, "width": curve.width, "simplify": False},
+            "line": {
+                "color": curve.colour,
+                "dash": curve.dash,
+                "width": curve.width,
+                "simplify": False,
+            },
         }
 
     def _array(self, values: np.ndarray) -> int:
@@ -118,27 +117,3 @@ def grid(charts: Sequence[Markup], small: bool = False) -> Markup:
 def shared_legend(name: str) -> Markup:
     """Return the place of a legend that switches a curve in all charts that name it."""
     return tag("div", class_="legend", data_common_legend=name)
-
-
-def _layout(panel: Panel) -> dict[str, Any]:
-    named = [escape(name) for name in panel.ticks]
-    ticks = {"tickvals": list(range(len(named))), "ticktext": named} if named else {}
-    return {
-        "xaxis": {**_AXIS, **ticks, "title": {"text": escape(panel.x_title), "standoff": 6}},
-        "yaxis": {**_AXIS, "title": {"text": escape(panel.y_title), "standoff": 4}, "nticks": 6},
-        "shapes": [_level_line(level.value) for level in panel.levels],
-        "annotations": [_level_name(level.value, level.label) for level in panel.levels if level.label],
-    }
-
-
-def _level_line(value: float) -> dict[str, Any]:
-    line = {"color": palette.QUIET, "width": 1.2, "dash": "dot"}
-    return {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": value, "y1": value, "line": line}
-
-
-def _level_name(value: float, label: str) -> dict[str, Any]:
-    return {
-        "xref": "paper", "x": 0.005, "xanchor": "left", "y": value, "yanchor": "bottom",
-        "text": escape(label), "showarrow": False, "font": {"size": 11, "color": palette.QUIET},
-        "bgcolor": "rgba(255,255,255,0.75)", "borderpad": 1,
-    }

@@ -17,7 +17,7 @@ from nullmotion.report.results import outcome, result_table, varied_table
 from nullmotion.report.run import thinning
 
 MOST_MULTIPLES = 24  # small multiples of gimbal angles on one page
-TALLY = {
+TALLY: dict[str, str] = {
     "stopped": "stopped by a condition",
     "done": "ran to the end",
     "trouble": "stuck or failed",
@@ -46,14 +46,20 @@ def compare_report(comparison: Any, path: str | Path, title: str, scenario_text:
     if varied:
         key = comparison.varied
         parts.append(curves(charts, varied, f"Over {key}", "varied", page.clockless()))
-        parts.append(page.section("Results", page.details("All cases", varied_table(cases, key)), id="results"))
+        parts.append(
+            page.section(
+                "Results", page.details("All cases", varied_table(cases, key)), id="results"
+            )
+        )
     else:
         parts.append(page.section("Results", result_table(cases), id="results"))
     if together:
         parts.append(curves(charts, together, "Over time", "time", page.toolbar()))
     if multiples:
         drawn = [charts.add(panel, "time", "angles", small=True) for panel in multiples]
-        parts.append(page.section("Gimbal angles", shared_legend("angles"), grid(drawn, True), id="angles"))
+        parts.append(
+            page.section("Gimbal angles", shared_legend("angles"), grid(drawn, True), id="angles")
+        )
     parts.append(thinning(charts))
     if scenario_text:
         parts.append(page.scenario(scenario_text))
@@ -61,21 +67,32 @@ def compare_report(comparison: Any, path: str | Path, title: str, scenario_text:
     return page.write(path, page.document(title, parts, charts, page.versions(*ran)))
 
 
-def curves(charts: Charts, panels: Sequence[Panel], title: str, group: str, tools: Markup) -> Markup:
+def curves(
+    charts: Charts, panels: Sequence[Panel], title: str, group: str, tools: Markup
+) -> Markup:
     """Return a section of charts that share one legend, a curve a case."""
     drawn = [charts.add(panel, group, "cases") for panel in panels]
-    return page.section(title, tag("div", tools, shared_legend("cases"), class_="tools"), grid(drawn), id=f"over-{group}")
+    return page.section(
+        title,
+        tag("div", tools, shared_legend("cases"), class_="tools"),
+        grid(drawn),
+        id=f"over-{group}",
+    )
 
 
 def headline(cases: Sequence[Case], title: str) -> Markup:
     """Return the first lines: title, how the cases went, what they ran on."""
-    tones = Counter(outcome(case).tone for case in cases)
+    tones: Counter[str] = Counter(outcome(case).tone for case in cases)
     tally = ", ".join(f"{tones[tone]} {words}" for tone, words in TALLY.items() if tones[tone])
     plural = "case" if len(cases) == 1 else "cases"
-    first = next((case.trajectory.setup.array for case in cases if case.trajectory is not None), None)
+    first = next(
+        (case.trajectory.setup.array for case in cases if case.trajectory is not None), None
+    )
     return tag(
         "header",
         tag("p", title, class_="title"),
         tag("h1", f"{len(cases)} {plural}: {tally}"),
-        tag("p", f"On {first.label}, {first.n} CMGs", class_="subject") if first is not None else "",
+        tag("p", f"On {first.label}, {first.n} CMGs", class_="subject")
+        if first is not None
+        else "",
     )

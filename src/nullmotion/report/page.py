@@ -43,7 +43,9 @@ def document(title: str, parts: Sequence[Markup], charts: Charts, footer: Markup
 
 def section(title: str, *parts: object, id: str) -> Markup:
     """Return a section with a heading."""
-    return tag("section", tag("h2", title, id=f"{id}-title"), *parts, id=id, aria_labelledby=f"{id}-title")
+    return tag(
+        "section", tag("h2", title, id=f"{id}-title"), *parts, id=id, aria_labelledby=f"{id}-title"
+    )
 
 
 def details(summary: str, content: Markup) -> Markup:
@@ -62,7 +64,16 @@ def toolbar() -> Markup:
     return tag(
         "div",
         tag("label", "Time ", tag("output", "", id="cursor-time")),
-        tag("input", type="range", id="cursor", min=0, max=1000, value=0, step=1, aria_label="Time shown in all charts"),
+        tag(
+            "input",
+            type="range",
+            id="cursor",
+            min=0,
+            max=1000,
+            value=0,
+            step=1,
+            aria_label="Time shown in all charts",
+        ),
         tag("button", "Whole run", id="reset", type="button"),
         class_="toolbar",
     )
@@ -74,7 +85,7 @@ def clockless() -> Markup:
 
 
 def versions(*runs: Any) -> Markup:
-    """Return what made the page: versions, and how and on which instructions its runs were computed."""
+    """Return what made the page: versions, and how its runs were computed."""
     backends = sorted({str(getattr(run, "backend", "")) for run in runs} - {""})
     instructions = sorted({str(getattr(run, "instruction_set", "")) for run in runs} - {""})
     said = [
@@ -101,7 +112,9 @@ def _plotly() -> str:
         file = Path(folder, "package_data", "plotly.min.js")
         if file.is_file():
             return file.read_text(encoding="utf-8").replace("</script", "<\\/script")
-    raise NullmotionError("plotly.min.js is missing from the installed plotly package: install plotly again")
+    raise NullmotionError(
+        "plotly.min.js is missing from the installed plotly package: install plotly again"
+    )
 
 
 def write(path: str | Path, content: str) -> Path:

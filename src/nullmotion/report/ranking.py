@@ -53,7 +53,9 @@ def best(column: Column, values: Sequence[Any], eligible: Sequence[bool]) -> lis
         values: Numbers or None.
         eligible: Which cases did their job; others are never best.
     """
-    numbers = np.array([_as_float(v) if ok else np.nan for v, ok in zip(values, eligible, strict=True)])
+    numbers = np.array(
+        [_as_float(v) if ok else np.nan for v, ok in zip(values, eligible, strict=True)]
+    )
     known = np.isfinite(numbers)
     if not column.better or known.sum() < 2:
         return [False] * len(numbers)
@@ -71,4 +73,6 @@ def cell(written: str, is_best: bool) -> Markup | str:
     if not is_best:
         return written
     star = tag("span", "★", aria_hidden="true")
-    return tag("span", star, join(" ", written), tag("span", " (best)", class_="unseen"), class_="best")
+    return tag(
+        "span", star, join(" ", written), tag("span", " (best)", class_="unseen"), class_="best"
+    )

@@ -45,10 +45,17 @@ def result_table(cases: Sequence[Case]) -> Markup:
         won = best(column, values, eligible)
         columns.append([cell(column.written(v), w) for v, w in zip(values, won, strict=True)])
     rows = [
-        (_name(case), _result(said), *numbers, _kind(case), _information(case), _status(case))
+        (_name(case), _result(said), *numbers, *_basis(case))
         for case, said, *numbers in zip(cases, outcomes, *columns, strict=True)
     ]
-    head = ("Case", "Result", *(c.title for c in COLUMNS), "Parameters", "Information used", "Status")
+    head = (
+        "Case",
+        "Result",
+        *(c.title for c in COLUMNS),
+        "Parameters",
+        "Information used",
+        "Status",
+    )
     numeric = range(2, 2 + len(COLUMNS))
     made = table(head, rows, "Cases and their results", numeric=numeric, wide=True)
     return join(made, tag("p", MARKING, class_="note"))
@@ -58,15 +65,31 @@ def varied_table(cases: Sequence[Any], key: str) -> Markup:
     """Return the table of a comparison over the values of a key, nothing marked."""
     shown = cases[:MOST_ROWS]
     rows = [
-        (_name(case), _result(outcome(case)), str(case.value))
-        + tuple(column.written(case.metrics.get(column.key)) for column in COLUMNS)
-        + (_kind(case), _information(case), _status(case))
+        (_name(case), _result(outcome(case)), str(case.value), *_numbers(case), *_basis(case))
         for case in shown
     ]
-    head = ("Case", "Result", key, *(c.title for c in COLUMNS), "Parameters", "Information used", "Status")
+    head = (
+        "Case",
+        "Result",
+        key,
+        *(c.title for c in COLUMNS),
+        "Parameters",
+        "Information used",
+        "Status",
+    )
     made = table(head, rows, "Cases at each value", numeric=range(2, 3 + len(COLUMNS)), wide=True)
     left = len(cases) - len(shown)
-    return join(made, tag("p", f"{left} more cases are not shown here.", class_="note") if left else "")
+    return join(
+        made, tag("p", f"{left} more cases are not shown here.", class_="note") if left else ""
+    )
+
+
+def _numbers(case: Case) -> list[str]:
+    return [column.written(case.metrics.get(column.key)) for column in COLUMNS]
+
+
+def _basis(case: Any) -> tuple[str, str, str]:
+    return _kind(case), _information(case), _status(case)
 
 
 def _name(case: Any) -> Markup:

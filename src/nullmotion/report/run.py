@@ -35,8 +35,12 @@ def run_report(trajectory: Run, path: str | Path, title: str, scenario_text: str
     parts = [
         headline(trajectory, title),
         page.section("Key numbers", row(run_tiles(trajectory)), id="numbers"),
-        page.section("Over time", page.toolbar(), grid(drawn), thinning(charts), id="charts-section"),
-        page.section("Metrics", tag("div", metric_table(trajectory.metrics), class_="metrics"), id="metrics"),
+        page.section(
+            "Over time", page.toolbar(), grid(drawn), thinning(charts), id="charts-section"
+        ),
+        page.section(
+            "Metrics", tag("div", metric_table(trajectory.metrics), class_="metrics"), id="metrics"
+        ),
     ]
     if scenario_text:
         parts.append(page.scenario(scenario_text))

@@ -9,7 +9,13 @@ from nullmotion.report.markup import Markup, join, tag
 from nullmotion.report.wording import Meaning, meaning, quantity
 
 
-def table(head: Sequence[object], rows: Sequence[Sequence[object]], caption: str, numeric: Sequence[int] = (), wide: bool = False) -> Markup:
+def table(
+    head: Sequence[object],
+    rows: Sequence[Sequence[object]],
+    caption: str,
+    numeric: Sequence[int] = (),
+    wide: bool = False,
+) -> Markup:
     """Return a table whose first column names the row.
 
     Args:
@@ -19,10 +25,22 @@ def table(head: Sequence[object], rows: Sequence[Sequence[object]], caption: str
         numeric: Columns that hold numbers.
         wide: Whether the first column stays in view while the others scroll.
     """
-    top = tag("tr", join(*(tag("th", cell, scope="col", class_=_side(i, numeric)) for i, cell in enumerate(head))))
+    top = tag(
+        "tr",
+        join(
+            *(tag("th", cell, scope="col", class_=_side(i, numeric)) for i, cell in enumerate(head))
+        ),
+    )
     body = join(*(_row(cells, numeric) for cells in rows))
     inner = tag("table", tag("caption", caption), tag("thead", top), tag("tbody", body))
-    return tag("div", inner, class_="scroll wide" if wide else "scroll", tabindex="0", role="region", aria_label=caption)
+    return tag(
+        "div",
+        inner,
+        class_="scroll wide" if wide else "scroll",
+        tabindex="0",
+        role="region",
+        aria_label=caption,
+    )
 
 
 def _row(cells: Sequence[object], numeric: Sequence[int]) -> Markup:
@@ -42,9 +60,15 @@ def metric_table(metrics: Mapping[str, Any]) -> Markup:
         said = meaning(key)
         written, unit = quantity(value, said.unit, key)
         rows.append((tag("code", key), written, unit or "–", _explained(said)))
-    return table(("Metric", "Value", "Unit", "Meaning"), rows, "All metrics of the run", numeric=(1,))
+    return table(
+        ("Metric", "Value", "Unit", "Meaning"), rows, "All metrics of the run", numeric=(1,)
+    )
 
 
 def _explained(said: Meaning) -> Markup:
     more = [part for part in (said.definition, said.citation) if part]
-    return join(said.words[:1].upper() + said.words[1:], ".", tag("small", " · ".join(more), class_="more") if more else "")
+    return join(
+        said.words[:1].upper() + said.words[1:],
+        ".",
+        tag("small", " · ".join(more), class_="more") if more else "",
+    )

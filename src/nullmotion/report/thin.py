@@ -27,6 +27,7 @@ def thinned(x: np.ndarray, y: np.ndarray, most: int) -> tuple[np.ndarray, np.nda
     low = starts + np.where(finite, padded, np.inf).argmin(axis=1)
     high = starts + np.where(finite, padded, -np.inf).argmax(axis=1)
     gaps = starts + finite.argmin(axis=1)  # the first gap, or the first point again
-    keep = np.unique(np.concatenate([starts, low, high, gaps, [k - 1]]))
-    keep = keep[keep < k]
-    return x[keep], y[keep]
+    keep = np.zeros(rows * length, bool)
+    for picked in (starts, low, high, gaps, k - 1):
+        keep[picked] = True
+    return x[keep[:k]], y[keep[:k]]

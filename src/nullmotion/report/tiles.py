@@ -35,19 +35,31 @@ def _tile(tile: Tile) -> Markup:
 
 def run_tiles(run: Run) -> list[Tile]:
     """Return the key numbers of a run."""
-    made = [_time(run), _momentum(run), _along(run), _sigma(run), _error(run), _rate(run), _step(run)]
+    made = [
+        _time(run),
+        _momentum(run),
+        _along(run),
+        _sigma(run),
+        _error(run),
+        _rate(run),
+        _step(run),
+    ]
     return [tile for tile in made if tile is not None]
 
 
 def _time(run: Run) -> Tile:
     label = "Ran for" if run.stopped_at_s is None else "Stopped at"
-    return Tile(label, number(run.t[-1]), "s", f"{len(run.t) - 1} steps of {number(run.setup.dt)} s")
+    return Tile(
+        label, number(run.t[-1]), "s", f"{len(run.t) - 1} steps of {number(run.setup.dt)} s"
+    )
 
 
 def _momentum(run: Run) -> Tile:
     size = float(np.linalg.norm(run.momentum[-1]))
     scale = float(run.setup.array.mean_momentum)
-    return Tile("Momentum at the end", number(size), "N m s", f"{number(size / scale, 3)} × mean h0")
+    return Tile(
+        "Momentum at the end", number(size), "N m s", f"{number(size / scale, 3)} × mean h0"
+    )
 
 
 def _along(run: Run) -> Tile | None:
@@ -65,7 +77,9 @@ def _sigma(run: Run) -> Tile | None:
     if values is None or not np.isfinite(values).any():
         return None
     at = int(np.nanargmin(values))
-    return Tile("Least sigma_min", number(values[at], 3), "", f"at {number(run.t[at])} s; 0 is singular")
+    return Tile(
+        "Least sigma_min", number(values[at], 3), "", f"at {number(run.t[at])} s; 0 is singular"
+    )
 
 
 def _error(run: Run) -> Tile | None:
@@ -90,4 +104,9 @@ def _step(run: Run) -> Tile | None:
     step = run.metrics.get("max_rate_step_rad_s")
     if step is None:
         return None
-    return Tile("Largest rate step", number(step, 3), "rad/s", f"{number(np.degrees(step), 3)} deg/s between samples")
+    return Tile(
+        "Largest rate step",
+        number(step, 3),
+        "rad/s",
+        f"{number(np.degrees(step), 3)} deg/s between samples",
+    )

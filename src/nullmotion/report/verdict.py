@@ -32,7 +32,9 @@ def verdict(run: Run) -> Verdict:
         return Verdict(f"Failed: not a number from {number(broken)} s on", "trouble")
     stuck = stuck_since(run)
     if stuck is not None and saturated(run):
-        return Verdict(f"Saturated: momentum used up, no torque from {number(stuck)} s on", "stopped")
+        return Verdict(
+            f"Saturated: momentum used up, no torque from {number(stuck)} s on", "stopped"
+        )
     if stuck is not None:
         return Verdict(f"Stuck: delivers no torque from {number(stuck)} s on", "trouble")
     if run.stopped_at_s is not None:

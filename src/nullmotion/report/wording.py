@@ -31,7 +31,9 @@ def number(value: Any, digits: int = 4) -> str:
     """Return a number in few digits; a dash for none."""
     if value is None:
         return "–"
-    if isinstance(value, bool) or not isinstance(value, (int, float)) and not hasattr(value, "dtype"):
+    if isinstance(value, bool) or (
+        not isinstance(value, (int, float)) and not hasattr(value, "dtype")
+    ):
         return str(value)
     plain = float(value)
     if math.isnan(plain):
@@ -71,7 +73,13 @@ def meaning(key: str) -> Meaning:
 
 
 def _unit_of(name: str) -> str:
-    for ending, unit in (("_rad_s", "rad/s"), ("_Nms", "N m s"), ("_Nm", "N m"), ("_s", "s"), ("_rad", "rad")):
+    for ending, unit in (
+        ("_rad_s", "rad/s"),
+        ("_Nms", "N m s"),
+        ("_Nm", "N m"),
+        ("_s", "s"),
+        ("_rad", "rad"),
+    ):
         if name.endswith(ending):
             return unit
     return "1"

@@ -44,8 +44,12 @@ def case_model(name: str) -> type[schema.CaseSection]:
 
 def stop_model() -> type[schema.StopSection]:
     """Return the model of ``[simulation.stop]``: a threshold for each metric of a state."""
-    known = [name for name in metrics.names() if not metrics.get(name).needs_rates]
-    keys = [f"{name}_{side}" for name in known for side in ("below", "above")]
+    return _stop_model(tuple(n for n in metrics.names() if not metrics.get(n).needs_rates))
+
+
+@cache
+def _stop_model(names: tuple[str, ...]) -> type[schema.StopSection]:
+    keys = [f"{name}_{side}" for name in names for side in ("below", "above")]
     fields: Any = {key: (float | None, None) for key in keys}
     return create_model("Stop", __base__=schema.StopSection, **fields)
 

@@ -6,7 +6,7 @@ import copy
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -51,7 +51,7 @@ class Source:
     @cached_property
     def _parsed(self) -> dict[str, Any]:
         try:
-            return tomllib.loads(self.text)
+            return _parse(self.text)
         except tomllib.TOMLDecodeError as error:
             raise ScenarioError([self._syntax_problem(str(error))]) from None
 
@@ -141,6 +141,12 @@ def parse_value(text: str, key: str) -> Any:
                 f"--set {key}", text, "a TOML value, such as 0.05, true, [1, 0, 0] or a word"
             ) from None
         return text
+
+
+@lru_cache(maxsize=8)
+def _parse(text: str) -> dict[str, Any]:
+    """Return a document; shared by the many scenarios that differ in overrides only."""
+    return tomllib.loads(text)
 
 
 def _tuples(value: Any) -> Any:

@@ -16,6 +16,8 @@ class Box90(Layout):
 
         h_1, h_2 = (cos delta, sin delta, 0),    g = +z
         h_3, h_4 = (cos delta, 0, sin delta),    g = -y
+
+    The planes share the x axis only.
     """
 
     name: ClassVar[str] = "box90"

@@ -17,6 +17,8 @@ class OrthogonalPairs(Layout):
         h_1, h_2 = (cos delta, sin delta, 0),    g = +z
         h_3, h_4 = (0, cos delta, sin delta),    g = +x
         h_5, h_6 = (sin delta, 0, cos delta),    g = +y
+
+    Each body axis lies in two of the planes.
     """
 
     name: ClassVar[str] = "orthogonal_pairs"

@@ -28,7 +28,9 @@ class Pyramid(Layout):
 
     name: ClassVar[str] = "pyramid"
     full_name: ClassVar[str] = "Pyramid"
-    citation: ClassVar[str] = "Mao et al., IEEE Access 7 (2019), Fig 2; Papakonstantinou et al. (2021), Eq 6"
+    citation: ClassVar[str] = (
+        "Mao et al., IEEE Access 7 (2019), Fig 2; Papakonstantinou et al. (2021), Eq 6"
+    )
 
     skew: float = field(default=float(np.radians(54.73)), metadata={"unit": "deg"})
     n: int = 4

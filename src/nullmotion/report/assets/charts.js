@@ -263,10 +263,12 @@
     moveCursor(linked, whole(linked)[1]);
   }
 
-  const refit = () => charts.forEach((chart) => Plotly.Plots.resize(chart.box));
+  // On paper a page is 700 px wide, whatever the window is.
+  const resized = (size) => charts.forEach((chart) => Plotly.relayout(chart.box, size(chart)));
   addEventListener("beforeprint", () => {
     document.querySelectorAll("details").forEach((d) => { d.open = true; });
-    refit();
+    charts.forEach((chart) => { chart.cursor.hidden = true; });
+    resized((chart) => (chart.box.closest("figure.small") ? { width: 225, height: 170 } : { width: 340, height: 230 }));
   });
-  addEventListener("afterprint", refit);
+  addEventListener("afterprint", () => resized(() => ({ autosize: true, width: null, height: null })));
 })();

@@ -1,5 +1,0 @@
-"""``python -m nullmotion.cli``."""
-
-from nullmotion.cli import main
-
-main()

@@ -1,0 +1,120 @@
+"""``compare`` and ``demo``."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from nullmotion.campaign import compare
+from nullmotion.campaign.vary import parse
+from nullmotion.cli import app, guard
+from nullmotion.errors import InputError
+from nullmotion.scenario import load_scenario
+
+
+@pytest.fixture
+def cli(capsys, tmp_path, monkeypatch):
+    """Call the command in an empty folder; return status, output and errors."""
+    monkeypatch.chdir(tmp_path)
+
+    def call(*arguments):
+        status = guard.call(app, arguments)
+        said = capsys.readouterr()
+        return status, said.out, said.err
+
+    return call
+
+
+def short(name, **values):
+    return load_scenario(name, {"simulation.duration_s": 0.3, **values})
+
+
+def test_cases_say_what_they_run_on():
+    comparison = compare(short("elliptic-singularity"))
+    kinds = {case.label: case.parameters_kind for case in comparison.cases}
+    assert kinds["pseudo-inverse"] == "defaults"
+    assert kinds["VCBSAE, published"] == "published"
+    assert kinds["ODSR2, published"] == "published, given"
+    assert comparison.cases[0].law == "pseudo-inverse"
+    given = compare(short("elliptic-singularity", **{"law.sigma_floor": 0.01}), ["sr"])
+    assert [case.parameters_kind for case in given.cases] == ["given", "defaults"]
+
+
+def test_a_law_that_cannot_steer_the_array_is_a_row():
+    comparison = compare(short("failed-cmg"), ["nd", "sr"])
+    refused = comparison.cases[1]
+    assert refused.trajectory is None
+    assert "null motion" in refused.reason
+    assert json.loads(comparison.to_json())["cases"][1]["ran"] is False
+
+
+def test_varied_cases_equal_their_single_runs():
+    comparison = compare(short("elliptic-singularity"), ["gsr"], parse("array.skew_deg=40:60:10"))
+    assert comparison.values == (40.0, 50.0, 60.0)
+    for case in comparison.cases:
+        one = compare(short("elliptic-singularity", **{"array.skew_deg": case.value}), ["gsr"])
+        single = next(c for c in one.cases if c.label == case.label)
+        assert case.metrics["min_sigma_min"] == pytest.approx(
+            single.metrics["min_sigma_min"], rel=1e-9
+        )
+        assert case.summary["final_momentum"] == pytest.approx(
+            single.summary["final_momentum"], abs=1e-9
+        )
+
+
+def test_vary_reads_ranges_and_lists():
+    assert parse("a.b=40:60:1").values == tuple(range(40, 61))
+    assert parse("a.b=1:0:-0.25").values == (1, 0.75, 0.5, 0.25, 0)
+    assert parse("a.b=0:0.3:0.1").values == (0, 0.1, 0.2, 0.3)
+    assert parse("law.name=sr,gsr").values == ("sr", "gsr")
+    assert parse("law.w=[1, 2],[3, 4]").values == ([1, 2], [3, 4])
+    for bad in ("a", "a=1", "a.b=", "a.b=1:2:0", "a.b=2:1:1", "a.b=1:x:1", "a.b=1,,2"):
+        with pytest.raises(InputError):
+            parse(bad)
+
+
+def test_compare_writes_its_files(cli, tmp_path):
+    setting = ["--set", "simulation.duration_s=0.3"]
+    status, out, err = cli(
+        "compare", "planar5", *setting, "--laws", "sr", "--vary", "array.n=5,6", "--out", "c"
+    )
+    assert (status, err) == (0, "")
+    assert {p.name for p in (tmp_path / "c").iterdir()} == {
+        "compare.json",
+        "compare.png",
+        "report.html",
+    }
+    found = json.loads((tmp_path / "c" / "compare.json").read_text())
+    assert found["varied"] == "array.n"
+    assert [case["value"] for case in found["cases"]] == [5, 5, 6, 6]
+    assert "array.n" in out
+
+
+def test_a_law_file_is_compared_beside_the_rest(cli, tmp_path):
+    (tmp_path / "half.py").write_text(
+        "from dataclasses import dataclass\nfrom typing import ClassVar\nimport nullmotion as nm\n"
+        "@dataclass(frozen=True)\nclass Half(nm.Law):\n    name: ClassVar[str] = 'half-for-test'\n"
+        "    def step(self, array, obs, state):\n"
+        "        return 0.5 * array.unit_jacobian(obs.delta).T @ obs.hdot, state\n"
+    )
+    setting = ["--set", "simulation.duration_s=0.3"]
+    try:
+        status, out, _ = cli(
+            "compare", "planar5", *setting, "--laws", "sr", "--law-file", "half.py"
+        )
+    finally:
+        from nullmotion import laws
+
+        laws.registry._entries.pop("half-for-test", None)
+    assert status == 0
+    assert "half-for-test" in out
+
+
+def test_demo_shows_and_writes(cli, tmp_path):
+    status, out, err = cli("demo")
+    assert (status, err) == (0, "")
+    assert (tmp_path / "nullmotion-demo" / "report.html").stat().st_size > 10_000
+    assert "nullmotion-demo/report.html" in out
+    assert "VCBSAE, published" in out
+    assert "Next:" in out
