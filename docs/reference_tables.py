@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
+import inspect
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from nullmotion import layouts, metrics, papers
+from nullmotion.compile import elementary
 from nullmotion.scenario import library_names, load_scenario, schema, sections
 
 _SECTIONS: dict[str, type[schema.Section]] = {
@@ -44,7 +47,7 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> Iterator[str]:
         yield "| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |"
 
 
-def summary(entry: type[Any]) -> str:
+def summary(entry: Any) -> str:
     """Return the first line of a docstring, without its full stop."""
     return (entry.__doc__ or "").strip().split("\n")[0].rstrip(".").replace("``", "`")
 
@@ -143,6 +146,16 @@ def public_names() -> Iterator[str]:
             yield f"- `nm.{name}`: {summary(item)}"
 
 
+def elementary_table() -> Iterable[str]:
+    """Return the elementary functions with the largest errors found, from their docstrings."""
+    rows = []
+    for name, function in inspect.getmembers(elementary, inspect.isfunction):
+        found = re.search(r"error below ([\d.]+) ulp", function.__doc__ or "")
+        if found and not name.startswith("_"):
+            rows.append((f"`{name}`", found[1], summary(function)))
+    return table(("Function", "Error below", "What it returns"), rows)
+
+
 TABLES: dict[str, Callable[[], Iterable[str]]] = {
     "layouts": layout_table,
     "metrics": metric_table,
@@ -150,4 +163,5 @@ TABLES: dict[str, Callable[[], Iterable[str]]] = {
     "papers": paper_table,
     "keys": key_tables,
     "names": public_names,
+    "elementary": elementary_table,
 }

@@ -30,11 +30,9 @@ def steering(law: str, array: CmgArray, delta: Any, hdot: Any) -> Any:
     """Return gimbal rates by one of the three laws."""
     a = array.jacobian(delta)
     if law == "svd":
-        svd = linalg.svd(a)
-        s3 = svd.s[2]
-        damped = s3 / (s3 * s3 + 0.01 * ops.exp(-10.0 * s3 * s3))
-        gains = np.array([1.0 / svd.s[0], 1.0 / svd.s[1], damped])
-        return svd.v @ (gains * (svd.u.T @ hdot))
+        rows = linalg.rows(a, hdot)
+        s1, s2, s3 = rows.squares
+        return rows.solve(np.array([s1, s2, s3 + 0.01 * ops.exp(-10.0 * s3)]))
     gram = a @ a.T
     adj = linalg.adjugate(gram)
     det = gram[0] @ adj[:, 0]

@@ -105,77 +105,113 @@ def svd(a: Matrix) -> Svd:
     if n < m:
         wide = svd(np.concatenate([a, np.zeros((m, m - n))], axis=1))
         return Svd(wide.u, wide.s, wide.v[:n], np.zeros((n, 0)))
-    q, r = _householder(a)
-    w, g = _jacobi(r)
-    order = _sort(np.concatenate([w, g]), m)
-    w, g = order[:m], order[m:]
-    s = np.array([norm(w[:, j]) for j in range(m)])
-    return Svd(_left_basis(w, s), s, q[:, :m] @ g, q[:, m:])
+    q, lower = _householder(a)
+    parts = [np.concatenate([lower[:, j], np.eye(m)[j]]) for j in range(m)]
+    parts, weights, squares = _orthogonalised(parts, m, 0.0)
+    scaled = [ops.sqrt(e) * x for e, x in zip(weights, parts, strict=True)]
+    columns = np.stack(scaled, axis=1)
+    w, g = columns[:m], columns[m:]
+    inverse = [ops.rsqrt(x) for x in squares]
+    s = np.array([x * y for x, y in zip(squares, inverse, strict=True)])
+    return Svd(_left_basis(w, s, inverse[0]), s, q[:, :m] @ g, q[:, m:])
 
 
 class Rows(NamedTuple):
-    """A = U R with orthogonal U and orthogonal rows of R, the longest first.
+    """Orthogonal rows of a matrix and a right-hand side, the longest row first.
+
+    The rows of R = U^T A are sqrt(weight_j) x_j = sigma_j v_j^T.
 
     Attributes:
-        u: Left singular vectors as columns, (m, m).
-        r: sigma_j v_j^T as rows, (m, n); a row of zeros where A loses rank.
+        x: Rows up to their weights, (m, n); a row of zeros where A loses rank.
+        b: U^T b up to the weights, (m,).
+        weights: What squares must be multiplied by, (m,).
         squares: sigma_j^2, descending, (m,).
     """
 
-    u: Matrix
-    r: Matrix
+    x: Matrix
+    b: Matrix
+    weights: Matrix
     squares: Matrix
 
-    def solve(self, b: Matrix, squares: Matrix) -> Matrix:
-        """Return R^T diag(1 / squares) U^T b: a pseudo-inverse with squares in sigma^2's place."""
-        return ((self.u.T @ b) / squares) @ self.r
+    @property
+    def along(self) -> Matrix:
+        """U^T b: the right-hand side along the left singular vectors, (m,)."""
+        return ops.sqrt(self.weights) * self.b
 
-    def project_out(self, x: Matrix, squares: Matrix) -> Matrix:
-        """Return x - R^T diag(1 / squares) R x: null motion, where squares are sigma^2."""
-        return x - ((self.r @ x) / squares) @ self.r
+    def solve(self, squares: Matrix) -> Matrix:
+        """Return V diag(sigma / squares) U^T b: a pseudo-inverse with squares in sigma^2's place."""
+        return (self.weights * self.b / squares) @ self.x
+
+    def project_out(self, y: Matrix, squares: Matrix) -> Matrix:
+        """Return y - V diag(sigma^2 / squares) V^T y: null motion, where squares are sigma^2."""
+        return y - (self.weights * (self.x @ y) / squares) @ self.x
 
 
-def rows(a: Matrix) -> Rows:
-    """Return the singular value decomposition of A kept as orthogonal rows.
+def rows(a: Matrix, b: Matrix) -> Rows:
+    """Return what the singular value decomposition of A (m x n) says about A x = b.
 
-    One-sided Jacobi on the rows of A. Rows that are orthogonal up to rounding are left
-    alone, so that what is zero by symmetry stays exactly zero, with and without fused
-    multiply-adds; and no singular vector is asked for that rounding alone would choose.
+    One-sided Jacobi on the rows of [A | b]: no singular vector is asked for that rounding
+    alone would choose.
     """
-    m, n = a.shape
-    parts = list(np.concatenate([a, np.eye(m)], axis=1))
-    for _ in range(_SWEEPS[m]):
-        for p, q in combinations(range(m), 2):
-            parts[p], parts[q] = _rotated(parts[p], parts[q], n)
-    size = [x[:n] @ x[:n] for x in parts]
-    for p, q in [(0, 1), (1, 2), (0, 1)] if m == 3 else [(0, 1)] if m == 2 else []:
-        swap = ops.less(size[p], size[q])
-        parts[p], parts[q] = (
-            ops.where(swap, parts[q], parts[p]),
-            ops.where(swap, parts[p], parts[q]),
-        )
-        size[p], size[q] = ops.where(swap, size[q], size[p]), ops.where(swap, size[p], size[q])
+    n = a.shape[1]
+    parts, weights, squares = _orthogonalised(list(np.concatenate([a, b[:, None]], axis=1)), n, _ORTHOGONAL)
     stacked = np.stack(parts)
-    return Rows(stacked[:, n:].T, stacked[:, :n], np.array(size))
+    return Rows(stacked[:, :n], stacked[:, n], np.array(weights), np.array(squares))
 
 
-def _rotated(x: Matrix, y: Matrix, n: int) -> tuple[Matrix, Matrix]:
-    """Rotate two rows so that their first n entries become orthogonal."""
-    xx, yy, xy = x[:n] @ x[:n], y[:n] @ y[:n], x[:n] @ y[:n]
-    coupling = ops.where(ops.less(_ORTHOGONAL * (xx * yy), xy * xy), 2.0 * xy, 0.0)
-    c, s = _rotation(yy - xx, coupling)
-    return c * x - s * y, s * x + c * y
+def _orthogonalised(parts: list[Matrix], n: int, least: float) -> tuple[list[Matrix], list[Any], list[Any]]:
+    """Rotate vectors until their first n entries are orthogonal; the longest comes first.
 
+    Sweeps of one-sided Jacobi with square-root-free rotations: a vector is
+    sqrt(weight) part. The angles of all but the last sweep need not be sharp.
 
-def _rotation(gap: Any, coupling: Any) -> tuple[Any, Any]:
-    """Return cosine and sine of the smaller angle that decouples two vectors.
+    Args:
+        parts: The vectors.
+        n: Number of entries that are to become orthogonal.
+        least: Squared cosine up to which two vectors count as orthogonal.
 
-    tan(2 angle) = coupling / gap, with gap = y.y - x.x and coupling = 2 x.y.
+    Returns:
+        Parts, weights and squared lengths.
     """
-    square = gap * gap + coupling * coupling
-    p = ops.absolute(gap) + square * ops.rsqrt(square) + _TINY
-    w = ops.rsqrt(p * p + coupling * coupling)
-    return p * w, ops.where(ops.less(gap, 0.0), -coupling, coupling) * w
+    m = len(parts)
+    pairs = list(combinations(range(m), 2))
+    last = _SWEEPS[m] - 1
+    weight: list[Any] = [1.0] * m
+
+    def square(p: int) -> Any:
+        return weight[p] * (parts[p][:n] @ parts[p][:n])
+
+    for sweep in range(_SWEEPS[m]):
+        for p, q in pairs:
+            x, y = parts[p], parts[q]
+            alpha, beta = _rotation(weight[p], weight[q], square(p), square(q), x[:n] @ y[:n], least, sweep < last)
+            parts[p], parts[q] = x - alpha * y, y + beta * x
+            cosine2 = 1.0 / (1.0 + alpha * beta)
+            weight[p], weight[q] = weight[p] * cosine2, weight[q] * cosine2
+    size = [square(p) for p in range(m)]
+    for p, q in [(0, 1), (1, 2), (0, 1)] if m == 3 else pairs:
+        swap = ops.less(size[p], size[q])
+        for values in (parts, weight, size):
+            values[p], values[q] = ops.where(swap, values[q], values[p]), ops.where(swap, values[p], values[q])
+    return parts, weight, size
+
+
+def _rotation(ex: Any, ey: Any, xx: Any, yy: Any, xy: Any, least: float, rough: bool) -> tuple[Any, Any]:
+    """Return alpha and beta of the rotation that makes two weighted vectors orthogonal.
+
+    x - alpha y and y + beta x, with both weights times 1/(1 + alpha beta), are the vectors
+    turned by the angle with tan(2 angle) = 2 x.y / (y.y - x.x). Vectors orthogonal to
+    ``least`` are left alone, so that what is zero by symmetry stays exactly zero, with and
+    without fused multiply-adds.
+    """
+    a, b = ey * xy, ex * xy
+    coupling = a * b
+    gap = 0.5 * (yy - xx)
+    square = gap * gap + coupling
+    slope = 1.0 / (ops.absolute(gap) + square * ops.rsqrt(square, rough) + _TINY)
+    near = ops.less_equal(coupling, least * (xx * yy))
+    slope = ops.where(near, 0.0, ops.copysign(slope, gap))
+    return a * slope, b * slope
 
 
 def _householder(a: Matrix) -> tuple[Matrix, Matrix]:
@@ -202,45 +238,19 @@ def _householder(a: Matrix) -> tuple[Matrix, Matrix]:
     return q, lower
 
 
-def _jacobi(w: Matrix) -> tuple[Matrix, Matrix]:
-    """Rotate the columns of W until they are orthogonal; return W G and G."""
-    m = w.shape[0]
-    both = np.concatenate([w, np.eye(m)])
-    for _ in range(_SWEEPS[m]):
-        for p, q in combinations(range(m), 2):
-            x, y = both[:m, p], both[:m, q]
-            c, s = _rotation(y @ y - x @ x, 2.0 * (x @ y))
-            left, right = both[:, p] * c - both[:, q] * s, both[:, p] * s + both[:, q] * c
-            both = both.copy() if both.dtype != object else np.array(both)
-            both[:, p], both[:, q] = left, right
-    return both[:m], both[m:]
-
-
-def _sort(columns: Matrix, m: int) -> Matrix:
-    """Order columns by the norm of their first m entries, descending."""
-    cols = [columns[:, j] for j in range(m)]
-    size = [c[:m] @ c[:m] for c in cols]
-    for p, q in [(0, 1), (1, 2), (0, 1)] if m == 3 else [(0, 1)] if m == 2 else []:
-        swap = ops.less(size[p], size[q])
-        cols[p], cols[q] = ops.where(swap, cols[q], cols[p]), ops.where(swap, cols[p], cols[q])
-        size[p], size[q] = ops.where(swap, size[q], size[p]), ops.where(swap, size[p], size[q])
-    return np.stack(cols, axis=1)
-
-
-def _left_basis(w: Matrix, s: Matrix) -> Matrix:
+def _left_basis(w: Matrix, s: Matrix, inverse: Any) -> Matrix:
     """Return orthonormal columns along w, completed where a singular value vanishes."""
     m = w.shape[0]
-    present = ops.less(0.0, s[0])
-    first = ops.where(present, w[:, 0] * (1.0 / ops.where(present, s[0], 1.0)), np.eye(m)[0])
+    first = ops.where(ops.less(0.0, s[0]), w[:, 0] * inverse, np.eye(m)[0])
     if m == 1:
         return first[:, None]
     if m == 2:
         second = _facing(np.array([-first[1], first[0]]), w[:, 1])
         return np.stack([first, second], axis=1)
     rest = w[:, 1] - (first @ w[:, 1]) * first
-    length = norm(rest)
-    usable = ops.less(_RANK * s[0], length)
-    second = ops.where(usable, rest * (1.0 / ops.where(usable, length, 1.0)), _perpendicular(first))
+    square = rest @ rest
+    usable = ops.less(_RANK * s[0], square * ops.rsqrt(square))
+    second = ops.where(usable, rest * ops.rsqrt(square), _perpendicular(first))
     third = _facing(cross(first, second), w[:, 2])
     return np.stack([first, second, third], axis=1)
 
@@ -254,4 +264,4 @@ def _perpendicular(u: Matrix) -> Matrix:
     """Return a unit vector perpendicular to the unit vector u."""
     flat = ops.less(ops.absolute(u[2]), 0.7)
     x = ops.where(flat, np.array([-u[1], u[0], 0.0 * u[2]]), np.array([0.0 * u[0], -u[2], u[1]]))
-    return x * (1.0 / norm(x))
+    return x * ops.rsqrt(x @ x)

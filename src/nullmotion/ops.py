@@ -158,11 +158,22 @@ def sqrt(x: Value) -> Value:
     return np.sqrt(x)
 
 
-def rsqrt(x: Value) -> Value:
-    """Return 1/sqrt(x) for x >= 0; 1e150 for x below 1e-300, so that x rsqrt(x) is 0 at 0."""
+def rsqrt(x: Value, rough: bool = False) -> Value:
+    """Return 1/sqrt(x) for x >= 0; large and finite at 0, so that x rsqrt(x) is 0 there.
+
+    On the tape it is made of products and sums alone, which keep the pipelines full where
+    divisions and roots stall them. A rough one is good to 4e-7 there.
+    """
     if is_symbolic(x):
-        return _elementwise(elementary.rsqrt, x)
+        return _elementwise(lambda v: elementary.rsqrt(v, rough), x)
     return 1.0 / np.sqrt(np.maximum(x, 1e-300))
+
+
+def copysign(a: Value, b: Value) -> Value:
+    """Return |a| with the sign of b."""
+    if is_symbolic(a, b):
+        return _elementwise(_tape.copysign, a, b)
+    return np.copysign(a, b)
 
 
 def acos(x: Value) -> Value:

@@ -25,12 +25,15 @@ def test_rows_are_a_singular_value_decomposition(shape: tuple[int, int]) -> None
         a = RNG.normal(size=shape)
         if k % 2:  # towards a singular matrix
             a[-1] = a[0] + a[-1] * 10.0 ** -RNG.uniform(0, 17)
-        rows = linalg.rows(a)
+        b = RNG.normal(size=shape[0])
+        rows = linalg.rows(a, b)
         values = np.linalg.svd(a, compute_uv=False)
         got = np.sqrt(rows.squares)
         np.testing.assert_allclose(got[: len(values)], values, atol=2e-14 * values[0])
-        np.testing.assert_allclose(rows.u @ rows.r, a, atol=4e-15 * values[0])
-        np.testing.assert_allclose(rows.u.T @ rows.u, np.eye(shape[0]), atol=4e-15)
+        r = np.sqrt(rows.weights)[:, None] * rows.x
+        np.testing.assert_allclose(r.T @ r, a.T @ a, atol=2e-14 * values[0] ** 2)
+        np.testing.assert_allclose(r.T @ rows.along, a.T @ b, atol=2e-14 * values[0] * linalg.norm(b))
+        np.testing.assert_allclose(r @ r.T, np.diag(rows.squares), atol=2e-14 * values[0] ** 2)
 
 
 def test_pseudo_inverse_is_numpys() -> None:

@@ -45,12 +45,12 @@ _LN2 = (0.6931471805598903, 5.497923018708371e-14)
 # fmt: off
 # polynomial coefficients, lowest power first
 _SIN = (
-    0.1666666666666663, -0.008333333333322116, 0.00019841269829588563, -2.7557313621079626e-06,
-    2.5050747719608165e-08, -1.5896227898748953e-10,
+    0.1666666666666663, 0.008333333333322116, 0.00019841269829588563, 2.7557313621079626e-06,
+    2.5050747719608165e-08, 1.5896227898748953e-10,
 )
 _COS = (
-    0.041666666666666595, -0.0013888888888873058, 2.480158728885259e-05, -2.7557314179558865e-07,
-    2.0875700878275175e-09, -1.1358538432369307e-11,
+    0.041666666666666595, 0.0013888888888873058, 2.480158728885259e-05, 2.7557314179558865e-07,
+    2.0875700878275175e-09, 1.1358538432369307e-11,
 )
 _EXP = (
     0.5000000000000011, 0.16666666666666413, 0.04166666666653027, 0.008333333333494203,
@@ -111,20 +111,20 @@ def _reduce(x: Symbol) -> tuple[Symbol, Symbol, Symbol]:
 
 
 def _quadrant(x: Symbol) -> tuple[Symbol, Symbol, Symbol]:
-    """Return b, sin(r - t) and cos r, by polynomials in z = r**2.
+    """Return b, sin(r - t) and cos r, by polynomials in z = -r**2.
 
-    t is left out where it changes less than an ulp. The order of signs makes
-    sin(-0) = -0 at no cost.
+    t is left out where it changes less than an ulp. The added 0.0 makes z = +0 at
+    r = 0, so that sin(-0) = -0 at no cost.
     """
     biased, r, t = _reduce(x)
-    z = product(r, r)
-    sine = r - fma(product(r, z), _polynomial(z, _SIN), t)
-    cosine = fma(z, fma(z, _polynomial(z, _COS), -0.5), 1.0)
+    z = fma(-r, r, 0.0)
+    sine = r + fma(product(r, z), _polynomial(z, _SIN), -t)
+    cosine = fma(z, fma(z, _polynomial(z, _COS), 0.5), 1.0)
     return biased, sine, cosine
 
 
 def sin(x: Symbol) -> Symbol:
-    """Return sin x for |x| <= 1e5 rad; error below 0.90 ulp.
+    """Return sin x for |x| <= 1e5 rad; error below 1.3 ulp.
 
     Reduction by multiples of π/2 in 139 bits, odd polynomial of degree 13.
     """
@@ -133,23 +133,24 @@ def sin(x: Symbol) -> Symbol:
 
 
 def cos(x: Symbol) -> Symbol:
-    """Return cos x for |x| <= 1e5 rad; error below 1.30 ulp.
+    """Return cos x for |x| <= 1e5 rad; error below 1.3 ulp.
 
     Shares all but the last step with `sin`; even polynomial of degree 14.
     """
     b, sine, cosine = _quadrant(x)
-    return flip(select(raw_bit(b, 0), sine, cosine), b + 1.0, 1)
+    return flip(select(raw_bit(b, 0), -sine, cosine), b, 1)
 
 
-def rsqrt(x: Symbol) -> Symbol:
-    """Return 1/sqrt(x) for x >= 0, 1e150 below 1e-300; error below 1.2 ulp.
+def rsqrt(x: Symbol, rough: bool = False) -> Symbol:
+    """Return 1/sqrt(x); error below 1.2 ulp, or 4e-7 if rough.
+
+    For normal x > 0; a large finite number below, so that x rsqrt(x) vanishes at 0.
 
     A guess from the bits, then steps of order five and three: products and sums alone,
     which pipeline where division and square root do not, and the same on every CPU.
     """
-    x = maximum(1e-300, x)
     y = rsqrt_guess(x)
-    for series in (_RSQRT, _RSQRT[:2]):
+    for series in (_RSQRT,) if rough else (_RSQRT, _RSQRT[:2]):
         e = fma(-(product(x, y)), y, 1.0)
         y = fma(product(y, e), _polynomial(e, series), y)
     return y

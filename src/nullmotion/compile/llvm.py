@@ -32,6 +32,11 @@ class Host:
     lanes: int
     fma: bool
 
+    @property
+    def batch_lanes(self) -> int:
+        """Runs that advance together in a large batch: two vectors hide each other's latency."""
+        return 2 * self.lanes if self.lanes > 1 else 1
+
 
 @lru_cache(maxsize=1)
 def host() -> Host:

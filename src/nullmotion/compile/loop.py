@@ -467,7 +467,7 @@ class LoopKernel:
         """Trace and compile a loop."""
         machine = llvm.host()
         self.loop = loop
-        self.width = width or machine.lanes
+        self.width = width or machine.batch_lanes
         traced = trace_loop(loop, recording, machine.fma)
         self.traced = traced
         writer = _Writer(loop, traced, self.width)

@@ -99,11 +99,11 @@ class DirectionalEscapeAvoidance(Law):
 
     def step(self, array: CmgArray, obs: Observation, state: DseaState) -> tuple[Any, DseaState]:
         """Return the damped rates with the escape rates in their null space."""
-        rows = linalg.rows(array.unit_jacobian(obs.delta))
+        rows = linalg.rows(array.unit_jacobian(obs.delta), obs.hdot / array.mean_momentum)
         escape, state = self._escape_rates(array, obs, rows, state)
         alpha = self._onset(self.sigma_min, rows.squares[-1]) * np.eye(array.m)[-1]
         squares = ops.maximum(rows.squares + alpha, _FLOOR * _FLOOR)
-        rates = rows.solve(obs.hdot / array.mean_momentum, squares)
+        rates = rows.solve(squares)
         return rates + rows.project_out(escape, squares), state
 
     def _onset(self, sigma: Any, squares: Any) -> Any:
@@ -119,7 +119,7 @@ class DirectionalEscapeAvoidance(Law):
         size, common, least = self._sizes(array, obs)
         potential = ops.maximum(against, 0.0) * size
         share = self._onset(self.sigma_acp, rows.squares)
-        along = (rows.u.T @ obs.hdot) / _nonzero(linalg.norm(obs.hdot))
+        along = rows.along * array.mean_momentum / _nonzero(linalg.norm(obs.hdot))
         lost = share / (rows.squares + share) * along
         magnitude = inside * (common * linalg.norm(lost)) * (potential * potential)
         arms = _anti_parallel(array, e) * (array.h0 / array.mean_momentum)[:, None]

@@ -48,11 +48,11 @@ class LocalGradient(Law):
     def step(self, array: CmgArray, obs: Observation, state: Any) -> tuple[Any, Any]:
         """Return least rates and the projected gradient."""
         A = array.unit_jacobian(obs.delta)
-        rows = linalg.rows(A)
+        rows = linalg.rows(A, obs.hdot / array.mean_momentum)
         squares = ops.maximum(rows.squares, _FLOOR * _FLOOR)
         momenta = array.rotor_momenta(obs.delta) / array.mean_momentum
         slope = linalg.adjugate(A @ A.T) @ A
         gradient = -2.0 * np.array([momenta[i] @ slope[:, i] for i in range(array.n)])
         gain = command_size(array, obs) if self.k is None else self.k
-        rates = rows.solve(obs.hdot / array.mean_momentum, squares)
+        rates = rows.solve(squares)
         return rates + gain * rows.project_out(gradient, squares), state

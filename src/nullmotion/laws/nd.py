@@ -64,9 +64,9 @@ class NonDirectionalNullMotion(Law):
     def step(self, array: CmgArray, obs: Observation, state: Any) -> tuple[Any, Any]:
         """Return least rates and null motion."""
         A = array.unit_jacobian(obs.delta)
-        rows = linalg.rows(A)
+        rows = linalg.rows(A, obs.hdot / array.mean_momentum)
         squares = ops.maximum(rows.squares, _FLOOR * _FLOOR)
-        rates = rows.solve(obs.hdot / array.mean_momentum, squares)
+        rates = rows.solve(squares)
         minors = linalg.null_vector(A)
         length = linalg.norm(minors)
         z = minors / ops.where(ops.less(1e-12, length), length, 1.0)

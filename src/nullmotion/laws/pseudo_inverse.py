@@ -44,6 +44,6 @@ class PseudoInverse(Law):
 
     def step(self, array: CmgArray, obs: Observation, state: Any) -> tuple[Any, Any]:
         """Return the least rates that give hdot."""
-        rows = linalg.rows(array.unit_jacobian(obs.delta))
+        rows = linalg.rows(array.unit_jacobian(obs.delta), obs.hdot / array.mean_momentum)
         squares = ops.maximum(rows.squares, self.sigma_floor * self.sigma_floor)
-        return rows.solve(obs.hdot / array.mean_momentum, squares), state
+        return rows.solve(squares), state

@@ -45,9 +45,9 @@ class SingularDirectionAvoidance(Law):
 
     def step(self, array: CmgArray, obs: Observation, state: Any) -> tuple[Any, Any]:
         """Return rates whose torque lacks only part of the singular direction."""
-        rows = linalg.rows(array.unit_jacobian(obs.delta))
+        rows = linalg.rows(array.unit_jacobian(obs.delta), obs.hdot / array.mean_momentum)
         det = np.prod(rows.squares)
         alpha = self.alpha0 * ops.exp(-self.kappa * det)
         least = np.eye(array.m)[-1]
         squares = ops.maximum(rows.squares + alpha * least, _FLOOR * _FLOOR)
-        return rows.solve(obs.hdot / array.mean_momentum, squares), state
+        return rows.solve(squares), state

@@ -91,7 +91,7 @@ class VectorControl(Law):
 
     def step(self, array: CmgArray, obs: Observation, state: Any) -> tuple[Any, Any]:
         """Return the pseudo-inverse rates turned towards G, or the escape rates."""
-        rows = linalg.rows(array.unit_jacobian(obs.delta))
+        rows = linalg.rows(array.unit_jacobian(obs.delta), obs.hdot / array.mean_momentum)
         squares = ops.maximum(rows.squares, _FLOOR * _FLOOR)
         residual = eram(array, obs.delta, obs.hdot)
         limit = self.sigma_c * self.sigma_c
@@ -100,7 +100,7 @@ class VectorControl(Law):
             ops.less(rows.squares[-1], limit), ops.less_equal(self.epsilon1, left)
         )
         q = ops.where(escape, rows.squares[-1] / limit, 1.0)
-        r = rows.solve(obs.hdot / array.mean_momentum, self._damped(squares, escape))
+        r = rows.solve(self._damped(squares, escape))
         G = self._direction(array, obs, residual)
         null = self._null_motion(array, obs, r, G, rows.project_out(G, squares))
         rate = command_size(array, obs) if self.escape_rate is None else self.escape_rate

@@ -88,7 +88,8 @@ def run_batch(
     runs = values.shape[1]
     if history:
         check_history(base, runs, history)
-    kernel = LoopKernel(loop(base, varying), recording=bool(history))
+    few = runs * base.steps < _WORK  # soon done: what is quickly compiled is enough
+    kernel = LoopKernel(loop(base, varying), recording=bool(history), width=llvm.host().lanes if few else None)
     job = _Job(kernel, base, values, history)
     _spread(job, runs, threads or os.cpu_count() or 1, progress)
     return job.result(runs)
