@@ -7,7 +7,7 @@ PYTHONS := $(or $(PYTHON),python3 python3.13 python3.12 python3.11 python)
 PIP := $(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt
 INSTALL := $(PIP) --no-build-isolation -e
 PINS := pyproject.toml constraints.txt
-BENCHMARK := benchmarks/closed_loop/closed_loop.py
+BENCHMARK := benchmarks/run.py
 MADE := build dist site docs/laws nullmotion-demo src/*.egg-info
 CACHES := .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis .benchmarks
 

@@ -152,7 +152,8 @@ def elementary_table() -> Iterable[str]:
     for name, function in inspect.getmembers(elementary, inspect.isfunction):
         found = re.search(r"error below ([\d.]+) ulp", function.__doc__ or "")
         if found and not name.startswith("_"):
-            rows.append((f"`{name}`", found[1], summary(function)))
+            about = summary(function).partition(";")[0].removeprefix("Return ")
+            rows.append((f"`{name}`", found[1], about))
     return table(("Function", "Error below", "What it returns"), rows)
 
 

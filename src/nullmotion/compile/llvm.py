@@ -190,7 +190,7 @@ def declarations(shape: Shape) -> list[str]:
     return [f"declare {v} @llvm.{name}.{suffix}({', '.join([v] * n)})" for name, n in arity.items()]
 
 
-ATTRIBUTES = 'attributes #0 = { nounwind "prefer-vector-width"="512" "min-legal-vector-width"="512" }'
+ATTRIBUTES = 'attributes #0 = { nounwind alignstack=64 "prefer-vector-width"="512" "min-legal-vector-width"="512" }'
 
 
 @lru_cache(maxsize=64)
