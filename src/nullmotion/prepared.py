@@ -52,10 +52,11 @@ class PreparedLaw:
         inputs = n + m + 1 + carried
         self._io = np.zeros(inputs + n + len(self._flags))
         self.delta, self.hdot = self._io[:n], self._io[n : n + m]
-        self._time, self._state = self._io[n + m : n + m + 1], self._io[n + m + 1 : inputs]
+        self._state = self._io[n + m + 1 : inputs]
         self.rates, self._raised = self._io[inputs : inputs + n], self._io[inputs + n :]
         run = llvm.machine(call_source(program, carried)).function("call", ctypes.c_void_p)
-        self._step = partial(run, ctypes.c_void_p(self._io.ctypes.data))
+        step = partial(run, ctypes.c_void_p(self._io.ctypes.data))
+        self._bound = (self.delta, self.hdot, self._io[n + m : n + m + 1], step, self.rates)
         self.reset()
 
     def reset(self, delta: Any = None) -> None:
@@ -65,11 +66,12 @@ class PreparedLaw:
 
     def __call__(self, delta: Any, hdot: Any, t: float = 0.0) -> np.ndarray:
         """Return gimbal rates [rad/s] for measured angles, wanted hdot and time."""
-        self.delta[:] = delta
-        self.hdot[:] = hdot
-        self._time[0] = t
-        self._step()
-        return self.rates
+        angles, wanted, clock, step, rates = self._bound
+        angles[:] = delta
+        wanted[:] = hdot
+        clock[0] = t
+        step()
+        return rates
 
     @property
     def status(self) -> list[str]:

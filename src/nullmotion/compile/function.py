@@ -11,6 +11,7 @@ import numpy as np
 from nullmotion import tree
 from nullmotion.compile import llvm
 from nullmotion.compile.program import Program, trace
+from nullmotion.compile.schedule import scheduled
 
 
 def map_source(program: Program, width: int) -> str:
@@ -27,7 +28,7 @@ def map_source(program: Program, width: int) -> str:
     for v in range(len(program.inputs)):
         lines += load(shape, "%in", f"{v}", "%stride", "%l", f"%in{v}")
         names.append(f"%in{v}")
-    code = llvm.body(program, names, shape, "v")
+    code = llvm.body(scheduled(program), names, shape, "v")
     lines += [f"  {line}" for line in code.lines]
     outputs = code.outputs
     for j, condition in enumerate(code.guards.values()):
@@ -70,7 +71,7 @@ def call_source(program: Program, carried: int) -> str:
     lines = ["define void @call(ptr %io) #0 {"]
     for v in range(count):
         lines += load(shape, "%io", f"{v}", "1", "0", f"%in{v}")
-    code = llvm.body(program, [f"%in{v}" for v in range(count)], shape, "v")
+    code = llvm.body(scheduled(program), [f"%in{v}" for v in range(count)], shape, "v")
     lines += [f"  {line}" for line in code.lines]
     outputs, guards = code.outputs, code.guards
     for j, condition in enumerate(guards.values()):

@@ -64,6 +64,8 @@ def _initialize() -> None:
 
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
+    # the order of operations is ours (schedule.py); LLVM's own scheduler undoes it
+    llvm.set_option("nullmotion", "-enable-misched=false")
 
 
 def _target_machine(level: int) -> Any:

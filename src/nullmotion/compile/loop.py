@@ -19,6 +19,7 @@ from nullmotion import tree
 from nullmotion.compile import carry, llvm
 from nullmotion.compile.function import load, store
 from nullmotion.compile.program import Program, finish
+from nullmotion.compile.schedule import scheduled
 from nullmotion.compile.tape import Symbol, Tape, tracing
 
 StageFunction = Callable[[Any, Any, Any, Any], Any]  # (k, row, state, parameters) -> state
@@ -373,7 +374,7 @@ class _Writer:
         live = self.traced.live
         others = range(self.size, self.size + self.parameters + 1 + self.loop.row + self.extra)
         outputs = [*live, *range(self.size, self.size + piece.records + self.extra)]
-        program = _cut(piece.program, [*live, *others], outputs)
+        program = scheduled(_cut(piece.program, [*live, *others], outputs))
         inputs = [
             *current[: self.states], *[f"%p{j}" for j in range(self.parameters)], "%kv", *row,
             *current[self.carried :],
