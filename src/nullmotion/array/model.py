@@ -63,15 +63,29 @@ class CmgArray:
         put = object.__setattr__
         put(self, "gimbal_axes", gimbal)
         put(self, "spin_axes", spin)
-        put(self, "h0", per_cmg("h0", self.h0, n, "finite and not negative", lambda v: (v >= 0) & np.isfinite(v)))
+        put(
+            self,
+            "h0",
+            per_cmg(
+                "h0", self.h0, n, "finite and not negative", lambda v: (v >= 0) & np.isfinite(v)
+            ),
+        )
         if not np.any(self.h0 > 0):
             raise InputError("h0", self.h0.tolist(), "at least one CMG with momentum")
-        put(self, "rate_limit", per_cmg("rate_limit", self.rate_limit, n, "above 0 (rad/s)", lambda v: v > 0))
+        put(
+            self,
+            "rate_limit",
+            per_cmg("rate_limit", self.rate_limit, n, "above 0 (rad/s)", lambda v: v > 0),
+        )
         if self.rate_limit_mode not in ("scale", "clip"):
             raise InputError("rate_limit_mode", self.rate_limit_mode, "'scale' or 'clip'")
         put(self, "angle_limits", checked_limits("angle_limits", self.angle_limits, n))
         put(self, "momentum_bias", as_vectors("momentum_bias", self.momentum_bias, 1)[0])
-        put(self, "torque_axes", torque_basis(gimbal) if self.torque_axes is None else self._checked_basis())
+        put(
+            self,
+            "torque_axes",
+            torque_basis(gimbal) if self.torque_axes is None else self._checked_basis(),
+        )
 
     def _checked_basis(self) -> np.ndarray:
         basis = as_vectors("torque_axes", self.torque_axes)
@@ -115,7 +129,7 @@ class CmgArray:
 
     @property
     def reference_rate(self) -> Any:
-        """Gimbal rate that laws scale their own rates by: the least rate limit, pi rad/s if none."""
+        """Rate that laws scale their own rates by: the least rate limit, pi rad/s if none."""
         least = ops.amin(self.rate_limit)
         return ops.where(ops.less(least, np.inf), least, np.pi)
 
@@ -128,7 +142,10 @@ class CmgArray:
     def rotor_momenta(self, delta: Any) -> Any:
         """Return each CMG's momentum h_i [N m s], (..., n, m)."""
         delta = np.asarray(delta)
-        return ops.cos(delta)[..., None] * self._spin() + ops.sin(delta)[..., None] * self._transverse()
+        return (
+            ops.cos(delta)[..., None] * self._spin()
+            + ops.sin(delta)[..., None] * self._transverse()
+        )
 
     def momentum(self, delta: Any) -> Any:
         """Return the array's momentum h(delta) [N m s], (..., m), for angles (..., n) [rad]."""
@@ -139,18 +156,22 @@ class CmgArray:
     def jacobian(self, delta: Any) -> Any:
         """Return A = dh/d(delta) [N m s/rad], (..., m, n), for angles (..., n) [rad]."""
         delta = np.asarray(delta)
-        return ops.cos(delta)[..., None, :] * self._transverse().T - ops.sin(delta)[..., None, :] * self._spin().T
+        return (
+            ops.cos(delta)[..., None, :] * self._transverse().T
+            - ops.sin(delta)[..., None, :] * self._spin().T
+        )
 
     def unit_jacobian(self, delta: Any) -> Any:
         """Return A divided by `mean_momentum` (dimensionless), (..., m, n)."""
         return self.jacobian(delta) / self.mean_momentum
 
     def limited(self, rates: Any) -> Any:
-        """Return gimbal rates within the rate limit, by `rate_limit_mode` [rad/s]."""
+        """Return gimbal rates (..., n) within the rate limit, by `rate_limit_mode` [rad/s]."""
         if self.rate_limit_mode == "clip":
             return ops.clip(rates, -self.rate_limit, self.rate_limit)
         excess = ops.amax(ops.absolute(rates) * (1.0 / self.rate_limit))
-        return rates * (1.0 / ops.where(ops.less(1.0, excess), excess, 1.0))
+        factor = 1.0 / ops.where(ops.less(1.0, excess), excess, 1.0)
+        return rates * np.asarray(factor)[..., None]
 
     def within_angle_limits(self, delta: Any) -> Any:
         """Return angles stopped at the gimbals' end stops [rad]."""
@@ -163,7 +184,9 @@ class CmgArray:
         """Whether any gimbal has an end stop."""
         return any(ops.is_symbolic(v) or np.isfinite(v) for v in np.ravel(self.angle_limits))
 
-    def without(self, failed: int | Iterable[int], frozen_at: float | Iterable[float] | None = None) -> CmgArray:
+    def without(
+        self, failed: int | Iterable[int], frozen_at: float | Iterable[float] | None = None
+    ) -> CmgArray:
         """Return the array after CMGs failed.
 
         Args:
@@ -176,7 +199,12 @@ class CmgArray:
             InputError: For an index out of range, or when no CMG would be left.
         """
         gone = [int(failed)] if isinstance(failed, (int, np.integer)) else [int(i) for i in failed]
-        if not gone or min(gone) < 0 or max(gone) >= self.n or not len(set(gone)) == len(gone) < self.n:
+        if (
+            not gone
+            or min(gone) < 0
+            or max(gone) >= self.n
+            or not len(set(gone)) == len(gone) < self.n
+        ):
             allowed = f"different indices 0 to {self.n - 1}, at least one CMG left"
             raise InputError("failed CMG", gone, allowed)
         keep = [i for i in range(self.n) if i not in gone]

@@ -57,15 +57,12 @@ def write(
 
 def show(trajectory: Trajectory, scenario: Scenario) -> None:
     """Print the run's key numbers."""
-    found = trajectory.summary()
+    found, stopped = trajectory.summary(), trajectory.stopped_at_s
     rows = [
         ("Law", scenario.law.name),
-        (
-            "Stopped at",
-            "-" if trajectory.stopped_at_s is None else f"{trajectory.stopped_at_s:.6g} s",
-        ),
+        ("Stopped at", "-" if stopped is None else f"{stopped:.6g} s"),
         ("Stop reason", trajectory.stop_reason),
-        ("Final momentum", " ".join(f"{v:.4g}" for v in found["final_momentum"]) + " N m s"),
+        ("Final momentum", screen.vector(found["final_momentum"]) + " N m s"),
         ("Least sigma_min", screen.number(found.get("min_sigma_min"))),
         ("Off-axis torque, peak", screen.percent(found.get("max_off_axis_torque_fraction")) + " %"),
         ("Largest rate step", screen.number(found.get("max_rate_step_rad_s")) + " rad/s"),

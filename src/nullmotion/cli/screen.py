@@ -10,6 +10,7 @@ from typing import Any
 
 _SILENT = 2.0  # seconds of work before a progress bar appears
 _NOISE = 1e-9
+_ROUNDING = 1e-12  # of the largest component
 _WIDE = 140  # columns where the output is not a terminal
 
 
@@ -76,6 +77,12 @@ def number(value: Any) -> str:
     if value is None or value != value:
         return "-"
     return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def vector(values: Sequence[float]) -> str:
+    """Return numbers with four digits; what is rounding noise beside the largest is 0."""
+    largest = max((abs(v) for v in values), default=0.0)
+    return " ".join("0" if abs(v) < _ROUNDING * largest else f"{v:.4g}" for v in values)
 
 
 def percent(value: Any) -> str:

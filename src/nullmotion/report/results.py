@@ -13,7 +13,12 @@ from nullmotion.report.verdict import status_words, verdict
 from nullmotion.report.wording import plain
 
 MOST_ROWS = 500  # of a varied comparison in its page
-KINDS = {"defaults": "defaults", "published": "as published", "given": "given"}
+KINDS = {
+    "defaults": "defaults",
+    "published": "as published",
+    "given": "given",
+    "published, given": "as published, some given",
+}
 MARKING = (
     "★ and a frame mark the best value of a column among the cases that did their job "
     "(not stuck, no failure). Torque figures are shares of the command; sigma_min is for A "

@@ -66,9 +66,7 @@ class Trajectory:
     @cached_property
     def measures(self) -> dict[str, np.ndarray]:
         """Singularity measures and momentum state along the run, each (N+1,)."""
-        array = self.setup.true_array
-        s = np.linalg.svd(self._jacobians / array.mean_momentum, compute_uv=False)
-        s = np.pad(s, ((0, 0), (0, array.m - s.shape[1])))
+        s = self._singular_values
         return {
             "sigma_min": s[:, -1],
             "sqrt_det_AAT": np.prod(s, axis=1),
@@ -78,6 +76,17 @@ class Trajectory:
         }
 
     @cached_property
+    def _singular_values(self) -> np.ndarray:
+        """Singular values of A / mean momentum, descending; NaN where angles are not finite."""
+        array = self.setup.true_array
+        jacobians = self._jacobians / array.mean_momentum
+        known = np.isfinite(jacobians).all(axis=(1, 2))
+        s = np.full((len(jacobians), array.m), np.nan)
+        found = np.linalg.svd(jacobians[known], compute_uv=False)
+        s[known] = np.pad(found, ((0, 0), (0, array.m - found.shape[1])))
+        return s
+
+    @cached_property
     def eram(self) -> np.ndarray:
         """Effective residual angular momentum of each CMG (Mao 2019, Eq 28), (N+1, n)."""
         return np.asarray(momentum_state.eram(self.setup.true_array, self.delta, self.hdot))
@@ -85,8 +94,14 @@ class Trajectory:
     @cached_property
     def desaturation_due_at_s(self) -> float | None:
         """When Mao 2019, Eq 39, first calls for desaturation [s]; None if it never does."""
-        given = {k: getattr(self.setup.law, k) for k in ("epsilon", "epsilon1", "sigma_c") if hasattr(self.setup.law, k)}
-        due = momentum_state.desaturation_due(self.measures["momentum_state"], self.measures["sigma_min"], **given)
+        given = {
+            k: getattr(self.setup.law, k)
+            for k in ("epsilon", "epsilon1", "sigma_c")
+            if hasattr(self.setup.law, k)
+        }
+        due = momentum_state.desaturation_due(
+            self.measures["momentum_state"], self.measures["sigma_min"], **given
+        )
         return float(self.t[np.argmax(due)]) if due.any() else None
 
     def summary(self) -> dict[str, Any]:
@@ -95,7 +110,7 @@ class Trajectory:
             "law": self.setup.law.name,
             "stopped_at_s": self.stopped_at_s,
             "stop_reason": self.stop_reason,
-            "duration_s": float(self.t[-1]),
+            "duration_s": round(float(self.t[-1]), 12),
             "steps": len(self.t) - 1,
             "final_momentum": self.momentum[-1].tolist(),
             "final_gimbal_deg": np.degrees(self.delta[-1]).tolist(),
