@@ -11,12 +11,14 @@ from nullmotion.compile import compile_function
 
 
 def matrices(rng: np.random.Generator, count: int) -> np.ndarray:
-    """3 x 4 matrices: random, graded, pyramids at any angle, exactly singular, of rank 0, 1 and 2."""
+    """3 x 4 matrices: random, graded, pyramids at any angle, of rank 0, 1 and 2."""
     a = rng.normal(size=(count, 3, 4))
     part = count // 8
     a[:part] *= 10.0 ** rng.uniform(-8, 0, (part, 1, 4))
     a[part : 3 * part] = nm.layouts.pyramid().jacobian(rng.uniform(-np.pi, np.pi, (2 * part, 4)))
-    a[3 * part : 4 * part] = nm.layouts.pyramid().jacobian(rng.integers(0, 4, (part, 4)) * np.pi / 2)
+    a[3 * part : 4 * part] = nm.layouts.pyramid().jacobian(
+        rng.integers(0, 4, (part, 4)) * np.pi / 2
+    )
     a[4 * part : 5 * part, 2] = a[4 * part : 5 * part, 0] - 2 * a[4 * part : 5 * part, 1]
     a[5 * part : 6 * part] = rng.normal(size=(part, 3, 1)) * rng.normal(size=(part, 1, 4))
     a[6 * part] = 0.0
@@ -45,7 +47,11 @@ def law_difference(name: str, count: int) -> float:
     """Largest difference between kernel and plain Python, over rates and the state's condition."""
     rng = np.random.default_rng(11)
     array, law = nm.layouts.pyramid(rate_limit=np.pi), nm.laws.create(name)
-    delta, hdot, t = rng.uniform(-np.pi, np.pi, (count, 4)), rng.normal(size=(count, 3)), rng.uniform(0, 10, count)
+    delta, hdot, t = (
+        rng.uniform(-np.pi, np.pi, (count, 4)),
+        rng.normal(size=(count, 3)),
+        rng.uniform(0, 10, count),
+    )
     state = law.init(array, np.zeros(4))
 
     def step(d: np.ndarray, h: np.ndarray, clock: float) -> np.ndarray:
@@ -62,9 +68,24 @@ def law_difference(name: str, count: int) -> float:
 def rows(quick: bool) -> list[Row]:
     """Measure everything."""
     count = 100_000 if quick else 1_000_000
-    out = [Row(f"SVD against LAPACK, {count} 3x4 matrices", svd_error(count), "x sigma_1", at_most=5e-15)]
+    out = [
+        Row(
+            f"SVD against LAPACK, {count} 3x4 matrices",
+            svd_error(count),
+            "x sigma_1",
+            at_most=5e-15,
+        )
+    ]
     states = 200 if quick else 10_000
     for law in LAWS:
         note = "largest difference / rates / condition number"
-        out.append(Row(f"{law}: kernel against plain Python, {states} states", law_difference(law, states), "", at_most=1e-13, note=note))
+        out.append(
+            Row(
+                f"{law}: kernel against plain Python, {states} states",
+                law_difference(law, states),
+                "",
+                at_most=1e-13,
+                note=note,
+            )
+        )
     return out

@@ -42,13 +42,16 @@ class Row:
     def markdown(self) -> str:
         """Return a table row."""
         verdict = {True: "met", False: "MISSED", None: ""}[self.met]
-        return f"| {self.what} | {self.value:.4g} {self.unit} | {self.target} | {verdict} | {self.note} |"
+        value = f"{self.value:.4g} {self.unit}"
+        return f"| {self.what} | {value} | {self.target} | {verdict} | {self.note} |"
 
 
 HEAD = "| what | measured | target | | note |\n|---|---|---|---|---|"
 
 
-def median_time(function: Callable[[], object], rounds: int, clock: Callable[[], float] = time.perf_counter) -> float:
+def median_time(
+    function: Callable[[], object], rounds: int, clock: Callable[[], float] = time.perf_counter
+) -> float:
     """Median seconds of a call."""
     times = []
     for _ in range(rounds):

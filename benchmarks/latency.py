@@ -21,7 +21,9 @@ from nullmotion.sim.stages import loop
 
 def compiling(law: str, rounds: int) -> float:
     """Seconds to trace a law in its batch loop on four CMGs and make machine code of it."""
-    setup = Setup(nm.layouts.pyramid(rate_limit=np.pi), nm.laws.create(law), np.zeros(4), np.ones(3))
+    setup = Setup(
+        nm.layouts.pyramid(rate_limit=np.pi), nm.laws.create(law), np.zeros(4), np.ones(3)
+    )
     lanes = llvm.host().lanes
 
     def once() -> None:
@@ -55,7 +57,12 @@ def command(arguments: list[str], rounds: int) -> float:
     """Seconds of a fresh process of the command line."""
     with tempfile.TemporaryDirectory() as folder:
         call = [sys.executable, "-m", "nullmotion", *arguments]
-        quiet = {"stdout": subprocess.DEVNULL, "check": True, "cwd": folder, "env": dict(os.environ)}
+        quiet = {
+            "stdout": subprocess.DEVNULL,
+            "check": True,
+            "cwd": folder,
+            "env": dict(os.environ),
+        }
         subprocess.run(call, **quiet)  # warms the file cache only
         return median_time(lambda: subprocess.run(call, **quiet), rounds)
 
@@ -64,9 +71,18 @@ def rows(quick: bool) -> list[Row]:
     """Measure everything."""
     laws = LAWS[:1] + LAWS[-1:] if quick else LAWS
     rounds = 2 if quick else 7
-    out = [Row(f"compile {law}, four CMGs", compiling(law, rounds), "s", at_most=0.6) for law in laws]
+    out = [
+        Row(f"compile {law}, four CMGs", compiling(law, rounds), "s", at_most=0.6) for law in laws
+    ]
     out += [Row(f"prepared call of {law}", calling(law, rounds), "us", at_most=3.0) for law in laws]
     scenario = str(Path(__file__).parent / "thousand_steps.toml")
     out.append(Row("nullmotion --help, cold", command(["--help"], rounds), "s", at_most=0.5))
-    out.append(Row("nullmotion run, 1000 steps, cold, files on disk", command(["run", scenario, "--out", "r"], rounds), "s", at_most=3.0))
+    out.append(
+        Row(
+            "nullmotion run, 1000 steps, cold, files on disk",
+            command(["run", scenario, "--out", "r"], rounds),
+            "s",
+            at_most=3.0,
+        )
+    )
     return out

@@ -39,7 +39,8 @@ def measure(quick: bool) -> tuple[list[Row], str]:
     machine = host()
     text = [
         f"nullmotion {nm.__version__}, Python {platform.python_version()}, {os.cpu_count()} cores, "
-        f"{machine.instruction_set}, {platform.system()} {platform.machine()}. Shared machine: trust ratios.\n"
+        f"{machine.instruction_set}, {platform.system()} {platform.machine()}. "
+        "Shared machine: trust ratios.\n"
     ]
     loops, table = throughput.closed_loop(quick)
     groups = {
@@ -60,8 +61,12 @@ def measure(quick: bool) -> tuple[list[Row], str]:
 def main() -> int:
     """Measure, print, judge."""
     parser = argparse.ArgumentParser(description="Run all benchmarks.")
-    parser.add_argument("--quick", action="store_true", help="small sizes, to see that everything runs")
-    parser.add_argument("--write", action="store_true", help="put the tables into benchmarks/README.md")
+    parser.add_argument(
+        "--quick", action="store_true", help="small sizes, to see that everything runs"
+    )
+    parser.add_argument(
+        "--write", action="store_true", help="put the tables into benchmarks/README.md"
+    )
     options = parser.parse_args()
     rows, text = measure(options.quick)
     print(text)

@@ -1,4 +1,4 @@
-"""Batched closed loops against hand-written C, Basilisk, Numba and NumPy; threads; ratios in one run."""
+"""Batched closed loops against C, Basilisk, Numba and NumPy; threads; ratios in one run."""
 
 from __future__ import annotations
 
@@ -30,10 +30,25 @@ def closed_loop(quick: bool) -> tuple[list[Row], str]:
     rows = []
     for law, (share, factor) in TARGETS.items():
         if bench.YARDSTICK in by_name:
-            rows.append(Row(f"{law}: nullmotion / hand-written SIMD C", bench.ratio(ours, by_name[bench.YARDSTICK], law), at_least=share))
+            rows.append(
+                Row(
+                    f"{law}: nullmotion / hand-written SIMD C",
+                    bench.ratio(ours, by_name[bench.YARDSTICK], law),
+                    at_least=share,
+                )
+            )
         if "Basilisk" in by_name:
-            note = "richer model: torque-driven VSCMGs with mass and inertia, messages between modules"
-            rows.append(Row(f"{law}: nullmotion / Basilisk", bench.ratio(ours, by_name["Basilisk"], law), at_least=factor, note=note))
+            note = (
+                "richer model: torque-driven VSCMGs with mass and inertia, messages between modules"
+            )
+            rows.append(
+                Row(
+                    f"{law}: nullmotion / Basilisk",
+                    bench.ratio(ours, by_name["Basilisk"], law),
+                    at_least=factor,
+                    note=note,
+                )
+            )
         if bench.YARDSTICK in by_name and "C, scalar build" in by_name:
             scalar = bench.ratio(by_name[bench.YARDSTICK], by_name["C, scalar build"], law)
             rows.append(Row(f"{law}: SIMD C / its own scalar build", scalar, at_least=5.0))
@@ -47,7 +62,13 @@ def threads(quick: bool) -> list[Row]:
 
     rng = np.random.default_rng(3)
     runs = 2_000 if quick else 40_000
-    setup = Setup(nm.layouts.pyramid(rate_limit=np.pi), nm.laws.create("sr"), np.zeros(4), np.ones(3), steps=2000)
+    setup = Setup(
+        nm.layouts.pyramid(rate_limit=np.pi),
+        nm.laws.create("sr"),
+        np.zeros(4),
+        np.ones(3),
+        steps=2000,
+    )
     delta, hdot = rng.uniform(-1, 1, (runs, 4)), rng.normal(size=(runs, 3))
     ratios, rates = [], []
     run_batch(setup, delta=delta[:64], hdot=hdot[:64])
@@ -60,4 +81,11 @@ def threads(quick: bool) -> list[Row]:
         ratios.append(walls[0] / walls[1])
         rates.append(runs * setup.steps / walls[0] / 1e6)
     rate = statistics.median(rates)
-    return [Row("two threads / one (momentum-rate batch, sr)", statistics.median(ratios), at_least=1.65, note=f"one thread: {rate:.0f} million steps/s")]
+    return [
+        Row(
+            "two threads / one (momentum-rate batch, sr)",
+            statistics.median(ratios),
+            at_least=1.65,
+            note=f"one thread: {rate:.0f} million steps/s",
+        )
+    ]

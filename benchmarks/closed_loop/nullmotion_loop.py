@@ -49,12 +49,14 @@ def _derivative(array: CmgArray, rates: Any, q: Any, omega: Any, delta: Any) -> 
     momentum = w.INERTIA * omega + array.momentum(delta)
     torque = -linalg.cross(omega, momentum) - array.jacobian(delta) @ rates
     x, y, z = 0.5 * omega
-    q_dot = np.array([
-        -q[1] * x - q[2] * y - q[3] * z,
-        q[0] * x + q[2] * z - q[3] * y,
-        q[0] * y - q[1] * z + q[3] * x,
-        q[0] * z + q[1] * y - q[2] * x,
-    ])
+    q_dot = np.array(
+        [
+            -q[1] * x - q[2] * y - q[3] * z,
+            q[0] * x + q[2] * z - q[3] * y,
+            q[0] * y - q[1] * z + q[3] * x,
+            q[0] * z + q[1] * y - q[2] * x,
+        ]
+    )
     return q_dot, torque * (1.0 / w.INERTIA)
 
 

@@ -46,7 +46,9 @@ def norm(a: Matrix) -> Any:
 
 def cross(a: Matrix, b: Matrix) -> Matrix:
     """Return the vector product (np.cross does not take objects of every kind)."""
-    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+    return np.array(
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    )
 
 
 def adjugate(m: Matrix) -> Matrix:
@@ -139,7 +141,7 @@ class Rows(NamedTuple):
         return ops.sqrt(self.weights) * self.b
 
     def solve(self, squares: Matrix) -> Matrix:
-        """Return V diag(sigma / squares) U^T b: a pseudo-inverse with squares in sigma^2's place."""
+        """Return V diag(sigma / squares) U^T b: a pseudo-inverse with squares for sigma^2."""
         return (self.weights * self.b / squares) @ self.x
 
     def project_out(self, y: Matrix, squares: Matrix) -> Matrix:
@@ -154,12 +156,16 @@ def rows(a: Matrix, b: Matrix) -> Rows:
     alone would choose.
     """
     n = a.shape[1]
-    parts, weights, squares = _orthogonalised(list(np.concatenate([a, b[:, None]], axis=1)), n, _ORTHOGONAL)
+    parts, weights, squares = _orthogonalised(
+        list(np.concatenate([a, b[:, None]], axis=1)), n, _ORTHOGONAL
+    )
     stacked = np.stack(parts)
     return Rows(stacked[:, :n], stacked[:, n], np.array(weights), np.array(squares))
 
 
-def _orthogonalised(parts: list[Matrix], n: int, least: float) -> tuple[list[Matrix], list[Any], list[Any]]:
+def _orthogonalised(
+    parts: list[Matrix], n: int, least: float
+) -> tuple[list[Matrix], list[Any], list[Any]]:
     """Rotate vectors until their first n entries are orthogonal; the longest comes first.
 
     Sweeps of one-sided Jacobi with square-root-free rotations: a vector is
@@ -184,7 +190,9 @@ def _orthogonalised(parts: list[Matrix], n: int, least: float) -> tuple[list[Mat
     for sweep in range(_SWEEPS[m]):
         for p, q in pairs:
             x, y = parts[p], parts[q]
-            alpha, beta = _rotation(weight[p], weight[q], square(p), square(q), x[:n] @ y[:n], least, sweep < last)
+            alpha, beta = _rotation(
+                weight[p], weight[q], square(p), square(q), x[:n] @ y[:n], least, sweep < last
+            )
             parts[p], parts[q] = x - alpha * y, y + beta * x
             cosine2 = 1.0 / (1.0 + alpha * beta)
             weight[p], weight[q] = weight[p] * cosine2, weight[q] * cosine2
@@ -192,11 +200,16 @@ def _orthogonalised(parts: list[Matrix], n: int, least: float) -> tuple[list[Mat
     for p, q in [(0, 1), (1, 2), (0, 1)] if m == 3 else pairs:
         swap = ops.less(size[p], size[q])
         for values in (parts, weight, size):
-            values[p], values[q] = ops.where(swap, values[q], values[p]), ops.where(swap, values[p], values[q])
+            values[p], values[q] = (
+                ops.where(swap, values[q], values[p]),
+                ops.where(swap, values[p], values[q]),
+            )
     return parts, weight, size
 
 
-def _rotation(ex: Any, ey: Any, xx: Any, yy: Any, xy: Any, least: float, rough: bool) -> tuple[Any, Any]:
+def _rotation(
+    ex: Any, ey: Any, xx: Any, yy: Any, xy: Any, least: float, rough: bool
+) -> tuple[Any, Any]:
     """Return alpha and beta of the rotation that makes two weighted vectors orthogonal.
 
     x - alpha y and y + beta x, with both weights times 1/(1 + alpha beta), are the vectors

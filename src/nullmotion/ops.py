@@ -185,7 +185,9 @@ def atan2(y: Value, x: Value) -> Value:
     """Return the angle of the point (x, y)."""
     if is_symbolic(y, x):
         tape = next(v.tape for v in _leaves(y, x) if isinstance(v, Symbol))
-        lift = np.frompyfunc(lambda v: v if isinstance(v, Symbol) else Symbol(tape, tape.constant(v)), 1, 1)
+        lift = np.frompyfunc(
+            lambda v: v if isinstance(v, Symbol) else Symbol(tape, tape.constant(v)), 1, 1
+        )
         return np.arctan2(lift(y), lift(x))
     return np.arctan2(y, x)
 

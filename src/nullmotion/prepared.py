@@ -79,7 +79,9 @@ class PreparedLaw:
         return [flag for flag, raised in zip(self._flags, self._raised, strict=True) if raised]
 
 
-def prepare(law: Law, array: CmgArray, *, period: float = 0.01, limited: bool = True) -> PreparedLaw:
+def prepare(
+    law: Law, array: CmgArray, *, period: float = 0.01, limited: bool = True
+) -> PreparedLaw:
     """Compile a law for an array.
 
     Args:

@@ -55,20 +55,25 @@ class Registry:
         found = [
             item
             for _, item in inspect.getmembers(module, inspect.isclass)
-            if issubclass(item, self.base) and item.__module__ == module.__name__ and item.__dict__.get("name")
+            if issubclass(item, self.base)
+            and item.__module__ == module.__name__
+            and item.__dict__.get("name")
         ]
         for item in found:
             self.add(item)
         return found
 
-    def add(self, entry: type[Any]) -> None:
+    def add(self, entry: Any) -> None:
         """Add an entry; a name may be taken once."""
         if not (inspect.isclass(entry) and issubclass(entry, self.base)):
             raise InputError(self.kind, entry, f"a class derived from {self.base.__name__}")
-        for name in (entry.name, *getattr(entry, "aliases", ())):
+        names: tuple[str, ...] = (getattr(entry, "name", ""), *getattr(entry, "aliases", ()))
+        for name in names:
             known = self._entries.get(name)
             if known is not None and known.__qualname__ != entry.__qualname__:
-                raise InputError(self.kind, name, f"a name that is not taken yet ({known.__module__} has it)")
+                raise InputError(
+                    self.kind, name, f"a name that is not taken yet ({known.__module__} has it)"
+                )
             self._entries[name] = entry
 
     def load_file(self, path: str | Path) -> list[type[Any]]:
@@ -82,11 +87,17 @@ class Registry:
         try:
             spec.loader.exec_module(module)
         except Exception as error:
-            raise InputError(f"{self.kind} file", str(path), f"a file that can be imported ({error!r})") from error
+            raise InputError(
+                f"{self.kind} file", str(path), f"a file that can be imported ({error!r})"
+            ) from error
         self._scan()
         found = self._add_module(module)
         if not found:
-            raise InputError(f"{self.kind} file", str(path), f"a file with a class derived from {self.base.__name__}")
+            raise InputError(
+                f"{self.kind} file",
+                str(path),
+                f"a file with a class derived from {self.base.__name__}",
+            )
         return found
 
     def names(self) -> list[str]:

@@ -63,7 +63,9 @@ def _rebuild(like: Any, source: Any) -> Any:
         return next(source)
     if isinstance(like, np.ndarray):
         values = [next(source) for _ in range(like.size)]
-        out = np.empty(like.size, dtype=object if any(isinstance(v, Symbol) for v in values) else float)
+        out = np.empty(
+            like.size, dtype=object if any(isinstance(v, Symbol) for v in values) else float
+        )
         out[:] = values
         return out.reshape(like.shape)
     if isinstance(like, tuple):

@@ -43,7 +43,12 @@ def environment(tmp_path):
 
 def call(arguments, environment, cwd):
     done = subprocess.run(
-        [sys.executable, "-m", *arguments], env=environment, cwd=cwd, capture_output=True, text=True, timeout=300
+        [sys.executable, "-m", *arguments],
+        env=environment,
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        timeout=300,
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
@@ -56,8 +61,17 @@ def test_a_law_from_an_entry_point_is_listed(environment, tmp_path):
 
 def test_a_law_from_an_entry_point_is_compared(environment, tmp_path):
     out = call(
-        ["nullmotion", "compare", "elliptic-singularity", "--laws", "transpose,sr", "--out", "result"],
-        environment, tmp_path,
+        [
+            "nullmotion",
+            "compare",
+            "elliptic-singularity",
+            "--laws",
+            "transpose,sr",
+            "--out",
+            "result",
+        ],
+        environment,
+        tmp_path,
     )
     assert "transpose" in out
     assert "transpose" in (tmp_path / "result" / "compare.json").read_text()
@@ -65,7 +79,17 @@ def test_a_law_from_an_entry_point_is_compared(environment, tmp_path):
 
 def test_a_law_from_an_entry_point_is_held_to_its_claims(environment):
     out = call(
-        ["pytest", "-q", "-p", "no:cacheprovider", "tests/contract/test_laws.py", "-k", "transpose"], environment, ROOT
+        [
+            "pytest",
+            "-q",
+            "-p",
+            "no:cacheprovider",
+            "tests/contract/test_laws.py",
+            "-k",
+            "transpose",
+        ],
+        environment,
+        ROOT,
     )
     assert " passed" in out
     assert " failed" not in out

@@ -32,7 +32,9 @@ def test_rows_are_a_singular_value_decomposition(shape: tuple[int, int]) -> None
         np.testing.assert_allclose(got[: len(values)], values, atol=2e-14 * values[0])
         r = np.sqrt(rows.weights)[:, None] * rows.x
         np.testing.assert_allclose(r.T @ r, a.T @ a, atol=2e-14 * values[0] ** 2)
-        np.testing.assert_allclose(r.T @ rows.along, a.T @ b, atol=2e-14 * values[0] * linalg.norm(b))
+        np.testing.assert_allclose(
+            r.T @ rows.along, a.T @ b, atol=2e-14 * values[0] * linalg.norm(b)
+        )
         np.testing.assert_allclose(r @ r.T, np.diag(rows.squares), atol=2e-14 * values[0] ** 2)
 
 

@@ -107,9 +107,14 @@ def test_files_are_replaced_and_others_left_alone(tmp_path):
 
 def test_an_interruption_while_writing_leaves_the_old_result(tmp_path):
     put(tmp_path, a="1", b="1")
-    with pytest.raises(KeyboardInterrupt), files.replacing(tmp_path, ("a", "b")) as new:
-        (new / "a").write_text("half")
-        raise KeyboardInterrupt
+
+    def write():
+        with files.replacing(tmp_path, ("a", "b")) as new:
+            (new / "a").write_text("half")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        write()
     assert listing(tmp_path) == {"a": "1", "b": "1"}
 
 

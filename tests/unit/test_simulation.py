@@ -62,7 +62,12 @@ def pyramid(**more):
 
 
 def setup(law, **more):
-    base = {"delta": np.zeros(4), "hdot": np.array([1.0, 0.0, 0.0]), "steps": 40, "integrator": "euler"}
+    base = {
+        "delta": np.zeros(4),
+        "hdot": np.array([1.0, 0.0, 0.0]),
+        "steps": 40,
+        "integrator": "euler",
+    }
     return Setup(pyramid(), law, **{**base, **more})
 
 
@@ -73,7 +78,9 @@ def named(*names):
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_law_state_advances_once_a_period(backend):
     result = run(setup(Ramp(), period_steps=10), backend=backend)
-    np.testing.assert_allclose(result.rates[:40, 0], np.repeat([0.01, 0.02, 0.03, 0.04], 10), rtol=1e-15)
+    np.testing.assert_allclose(
+        result.rates[:40, 0], np.repeat([0.01, 0.02, 0.03, 0.04], 10), rtol=1e-15
+    )
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
@@ -95,7 +102,9 @@ def test_delay_moves_rates_by_whole_steps(backend, period, delay):
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_what_a_law_is_told(backend):
     bias = np.array([0.0, 0.0, 0.0, 0.25])
-    what = setup(Echo(), dt=0.02, period_steps=5, encoder_bias=bias, delta=np.array([0.1, 0.2, 0.3, 0.5]))
+    what = setup(
+        Echo(), dt=0.02, period_steps=5, encoder_bias=bias, delta=np.array([0.1, 0.2, 0.3, 0.5])
+    )
     asked = run(what, backend=backend).rates_asked
     np.testing.assert_allclose(asked[[0, 5, 10], 0], [0.0, 0.1, 0.2], atol=1e-15)
     assert asked[0, 1] == pytest.approx(0.1)
@@ -116,7 +125,9 @@ def test_momentum_follows_the_command():
     np.testing.assert_allclose(result.torque[:-1], np.tile([1.0, 0, 0], (100, 1)), atol=1e-12)
 
 
-@pytest.mark.parametrize(("integrator", "order"), [("euler", 1), ("semi-implicit-euler", 1), ("rk4", 4)])
+@pytest.mark.parametrize(
+    ("integrator", "order"), [("euler", 1), ("semi-implicit-euler", 1), ("rk4", 4)]
+)
 def test_integrators_have_their_order(integrator, order):
     """The impulse integral of held rates, against the exact change of momentum."""
 
@@ -144,26 +155,42 @@ class Constant(nm.Law):
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_stop_is_tested_before_the_step(backend):
     stop = Stop(metrics.get("momentum_Nms")(), 0.095, below=False)
-    result = run(setup(nm.laws.create("pseudo-inverse"), stop=(stop,), metrics=named("momentum_Nms")), backend=backend)
+    result = run(
+        setup(nm.laws.create("pseudo-inverse"), stop=(stop,), metrics=named("momentum_Nms")),
+        backend=backend,
+    )
     assert result.stopped_at_s == pytest.approx(0.10)
     assert result.stop_reason == "momentum_Nms above 0.095"
     assert result.momentum[-2, 0] < 0.095 < result.momentum[-1, 0]
     assert len(result.t) == 11
     assert np.isnan(result.rates[-1]).all()
-    assert result.metrics["final_momentum_Nms"] == pytest.approx(np.linalg.norm(result.momentum[-1]))
+    assert result.metrics["final_momentum_Nms"] == pytest.approx(
+        np.linalg.norm(result.momentum[-1])
+    )
 
 
 def test_metrics_are_those_of_the_history():
     names = [n for n in metrics.names() if n != "momentum_error_Nms"]
-    result = run(setup(nm.laws.create("sr"), steps=120, metrics=named(*names), delta=np.array([0.3, -0.2, 0.5, 0.1])))
+    result = run(
+        setup(
+            nm.laws.create("sr"),
+            steps=120,
+            metrics=named(*names),
+            delta=np.array([0.3, -0.2, 0.5, 0.1]),
+        )
+    )
     m = result.metrics
     assert m["min_sigma_min"] == pytest.approx(result.measures["sigma_min"].min(), rel=1e-12)
-    assert m["final_momentum_state"] == pytest.approx(result.measures["momentum_state"][-1], rel=1e-12)
+    assert m["final_momentum_state"] == pytest.approx(
+        result.measures["momentum_state"][-1], rel=1e-12
+    )
     steps = np.abs(np.diff(result.rates[:-1], axis=0)).max()
     assert m["max_rate_step_rad_s"] == pytest.approx(steps, rel=1e-12)
     across = np.linalg.norm(result.torque[:-1, 1:], axis=1)
     assert m["max_off_axis_torque_fraction"] == pytest.approx(across.max(), rel=1e-9, abs=1e-13)
-    assert m["rms_off_axis_torque_fraction"] == pytest.approx(np.sqrt((across**2).mean()), rel=1e-9, abs=1e-13)
+    assert m["rms_off_axis_torque_fraction"] == pytest.approx(
+        np.sqrt((across**2).mean()), rel=1e-9, abs=1e-13
+    )
     along = np.abs(result.torque[:-1, 0] - 1.0)
     assert m["max_along_axis_torque_fraction"] == pytest.approx(along.max(), rel=1e-9)
 
@@ -171,8 +198,13 @@ def test_metrics_are_those_of_the_history():
 @pytest.mark.parametrize("law", ["pseudo-inverse", "sr", "vcbsae"])
 def test_kernel_and_python_agree(law):
     s = setup(
-        nm.laws.create(law), steps=100, metrics=named("sigma_min", "off_axis_torque_fraction", "rate_step_rad_s"),
-        delta=np.array([0.3, -0.2, 0.5, 0.1]), period_steps=2, delay_steps=1, integrator="rk4",
+        nm.laws.create(law),
+        steps=100,
+        metrics=named("sigma_min", "off_axis_torque_fraction", "rate_step_rad_s"),
+        delta=np.array([0.3, -0.2, 0.5, 0.1]),
+        period_steps=2,
+        delay_steps=1,
+        integrator="rk4",
     )
     a, b = run(s, backend="kernel"), run(s, backend="python")
     np.testing.assert_allclose(a.delta, b.delta, atol=1e-12)
@@ -191,7 +223,9 @@ def test_end_stops_hold_the_gimbals():
 
 
 def test_a_law_that_branches_still_runs_and_says_where():
-    with pytest.warns(RuntimeWarning, match=r"test_simulation\.py:\d+: this line decides by a value"):
+    with pytest.warns(
+        RuntimeWarning, match=r"test_simulation\.py:\d+: this line decides by a value"
+    ):
         result = run(setup(Branching()))
     assert result.backend == "python"
     with pytest.raises(TraceError, match=r"test_simulation\.py:\d+"):
@@ -209,7 +243,12 @@ def test_batch_equals_single_runs_bit_for_bit(rng):
     """Lanes, threads and slices change nothing."""
     starts, commands = rng.uniform(-0.5, 0.5, (37, 4)), rng.normal(size=(37, 3))
     stop = Stop(metrics.get("sigma_min")(), 0.3)
-    s = setup(nm.laws.create("vcbsae"), steps=150, stop=(stop,), metrics=named("sigma_min", "peak_rate_rad_s"))
+    s = setup(
+        nm.laws.create("vcbsae"),
+        steps=150,
+        stop=(stop,),
+        metrics=named("sigma_min", "peak_rate_rad_s"),
+    )
     batch = run_batch(s, delta=starts, hdot=commands, threads=2, history=1)
     for i in (0, 7, 36):
         one = run(replace(s, delta=starts[i], hdot=commands[i]))
@@ -226,7 +265,15 @@ def test_batch_varies_any_number(rng):
     law, setups = "sr", []
     for skew, lambda0 in zip(np.radians([40, 50, 60, 70]), [0.001, 0.01, 0.02, 0.1], strict=True):
         array = nm.layouts.pyramid(skew=skew, rate_limit=2.0)
-        setups.append(Setup(array, nm.laws.create(law, lambda0=lambda0), np.full(4, 0.2), np.array([0.3, 0.1, 0.2]), steps=60))
+        setups.append(
+            Setup(
+                array,
+                nm.laws.create(law, lambda0=lambda0),
+                np.full(4, 0.2),
+                np.array([0.3, 0.1, 0.2]),
+                steps=60,
+            )
+        )
     batch = run_batch(setups[0], setups=setups)
     for i, one in enumerate(setups):
         np.testing.assert_allclose(batch.final_gimbal_rad[i], run(one).delta[-1], atol=1e-13)

@@ -33,7 +33,9 @@ def checked_axes(gimbal_axes: Any, spin_axes: Any) -> tuple[np.ndarray, np.ndarr
         lengths = np.linalg.norm(axes, axis=1)
         if np.any(np.abs(lengths - 1) > _UNIT):
             worst = int(np.argmax(np.abs(lengths - 1)))
-            raise InputError(f"{key}[{worst}]", axes[worst].tolist(), "a unit vector (length 1 to 1e-6)")
+            raise InputError(
+                f"{key}[{worst}]", axes[worst].tolist(), "a unit vector (length 1 to 1e-6)"
+            )
     along = np.abs(np.sum(gimbal * spin, axis=1))
     if np.any(along > _UNIT):
         worst = int(np.argmax(along))
@@ -41,14 +43,17 @@ def checked_axes(gimbal_axes: Any, spin_axes: Any) -> tuple[np.ndarray, np.ndarr
         raise InputError(
             f"spin_axes[{worst}]",
             spin[worst].tolist(),
-            f"a spin axis perpendicular to its gimbal axis {gimbal[worst].tolist()} (this one is {relation})",
+            f"a spin axis perpendicular to its gimbal axis {gimbal[worst].tolist()} "
+            f"(this one is {relation})",
         )
     gimbal = gimbal / np.linalg.norm(gimbal, axis=1, keepdims=True)
     spin = spin - np.sum(gimbal * spin, axis=1, keepdims=True) * gimbal
     return gimbal, spin / np.linalg.norm(spin, axis=1, keepdims=True)
 
 
-def per_cmg(key: str, value: Any, n: int, allowed: str, good: Callable[[np.ndarray], Any]) -> np.ndarray:
+def per_cmg(
+    key: str, value: Any, n: int, allowed: str, good: Callable[[np.ndarray], Any]
+) -> np.ndarray:
     """Return one number for each CMG, checked."""
     try:
         array = np.broadcast_to(np.asarray(value, float), (n,)).copy()
@@ -64,7 +69,9 @@ def checked_limits(key: str, value: Any, n: int) -> np.ndarray:
     try:
         limits = np.broadcast_to(np.asarray(value, float), (n, 2)).copy()
     except (TypeError, ValueError) as error:
-        raise InputError(key, value, f"two numbers, or {n} x 2: lowest and highest (rad)") from error
+        raise InputError(
+            key, value, f"two numbers, or {n} x 2: lowest and highest (rad)"
+        ) from error
     if not np.all(limits[:, 0] < limits[:, 1]):
         raise InputError(key, limits.tolist(), "lowest below highest (rad)")
     return limits

@@ -41,5 +41,6 @@ class Layout:
     def array(self, **parameters: Any) -> CmgArray:
         """Return the array; parameters are those of `CmgArray` beside the axes."""
         gimbal, spin = (np.asarray(a, float) for a in self.axes())
-        exact = [np.where(np.abs(a) < 1e-15, 0.0, a) for a in (gimbal, spin)]  # cos(pi/2) is meant as 0
-        return CmgArray(*exact, **parameters, label=self.name)
+        # cos(pi/2) is meant as 0
+        gimbal, spin = (np.where(np.abs(a) < 1e-15, 0.0, a) for a in (gimbal, spin))
+        return CmgArray(gimbal, spin, **parameters, label=self.name)

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from nullmotion import linalg, ops
+from nullmotion import ops
 from nullmotion.array.model import CmgArray
 
 
@@ -89,7 +89,11 @@ def describe(sse_value: float, epsilon: float = 0.2, epsilon1: float = 0.8) -> s
 
 
 def desaturation_due(
-    sse_values: np.ndarray, sigma_min: np.ndarray, epsilon: float = 0.2, epsilon1: float = 0.8, sigma_c: float = 0.1
+    sse_values: np.ndarray,
+    sigma_min: np.ndarray,
+    epsilon: float = 0.2,
+    epsilon1: float = 0.8,
+    sigma_c: float = 0.1,
 ) -> np.ndarray:
     """Return where Mao 2019, Eq 39, calls for desaturation: a branch that the paper leaves blank.
 

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from nullmotion.compile.operations import OPERATIONS
+from nullmotion.compile.program import reachable
 from nullmotion.compile.tape import Tape
 
 
@@ -27,7 +28,9 @@ class Carried:
     updates: list[int]
 
 
-def find(tape: Tape, state: Sequence[int], parameters: Sequence[int], outputs: Sequence[int]) -> Carried:
+def find(
+    tape: Tape, state: Sequence[int], parameters: Sequence[int], outputs: Sequence[int]
+) -> Carried:
     """Return the values that a step can hand to the next.
 
     Args:
@@ -36,10 +39,12 @@ def find(tape: Tape, state: Sequence[int], parameters: Sequence[int], outputs: S
         parameters: Nodes that stay the same from step to step.
         outputs: Nodes of the new state and of everything else the step gives.
     """
-    needed = _reachable(tape, outputs)
+    needed = reachable(tape.nodes, outputs)
     moved = {node: _advance(tape, node, outputs[i]) for i, node in enumerate(state)}
     images: dict[int, int] = {p: p for p in parameters}
-    held: dict[int, int | None] = dict.fromkeys(parameters)  # the condition under which a run goes on
+    held: dict[int, int | None] = dict.fromkeys(
+        parameters
+    )  # the condition under which a run goes on
     images.update({node: target for node, (target, _) in moved.items()})
     held.update({node: condition for node, (_, condition) in moved.items()})
     pure = set(parameters) | set(state)
@@ -61,15 +66,25 @@ def find(tape: Tape, state: Sequence[int], parameters: Sequence[int], outputs: S
 
 
 def _frontier(
-    tape: Tape, needed: set[int], candidates: dict[int, int], held: dict[int, int | None], outputs: Sequence[int]
+    tape: Tape,
+    needed: set[int],
+    candidates: dict[int, int],
+    held: dict[int, int | None],
+    outputs: Sequence[int],
 ) -> Carried:
     """Keep the candidates that something else than a candidate uses."""
     used = {a for i in needed if i not in candidates for a in tape.nodes[i].args}
-    nodes = [i for i in candidates if i in used and tape.nodes[i].kind == "real" and candidates[i] != i]
+    nodes = [
+        i for i in candidates if i in used and tape.nodes[i].kind == "real" and candidates[i] != i
+    ]
     updates = []
     for i in nodes:
         condition = held[i]
-        updates.append(candidates[i] if condition is None else tape.record("select", condition, candidates[i], i))
+        updates.append(
+            candidates[i]
+            if condition is None
+            else tape.record("select", condition, candidates[i], i)
+        )
     return Carried(nodes, updates)
 
 
@@ -91,14 +106,3 @@ def _lookup(tape: Tape, op: str, args: list[int]) -> int | None:
     if OPERATIONS[op].commutative and args[0] > args[1]:
         args = [args[1], args[0]]
     return tape._index.get((op, *args))
-
-
-def _reachable(tape: Tape, roots: Sequence[int]) -> set[int]:
-    found: set[int] = set()
-    stack = list(roots)
-    while stack:
-        i = stack.pop()
-        if i not in found:
-            found.add(i)
-            stack.extend(tape.nodes[i].args)
-    return found

@@ -21,35 +21,51 @@ def map_source(program: Program, width: int) -> str:
     (0 or 1 for each guard, in the order of the program's guards) behind them.
     """
     shape = llvm.Shape(width)
-    lines = ["define void @map(ptr noalias %in, ptr noalias %out, i64 %stride, i64 %lane0, i64 %lane1) #0 {"]
-    lines += ["entry:", "  br label %lane", "lane:"]
+    arguments = "ptr noalias %in, ptr noalias %out, i64 %stride, i64 %lane0, i64 %lane1"
+    lines = [f"define void @map({arguments}) #0 {{", "entry:", "  br label %lane", "lane:"]
     lines += ["  %l = phi i64 [%lane0, %entry], [%next, %lane]"]
-    names = []
-    for v in range(len(program.inputs)):
-        lines += load(shape, "%in", f"{v}", "%stride", "%l", f"%in{v}")
-        names.append(f"%in{v}")
-    code = llvm.body(scheduled(program), names, shape, "v")
-    lines += [f"  {line}" for line in code.lines]
-    outputs = code.outputs
-    for j, condition in enumerate(code.guards.values()):
-        zero, one = shape.constant(0.0), shape.constant(1.0)
-        lines.append(f"  %guard{j} = select {shape.boolean} {condition}, {shape.real} {zero}, {shape.real} {one}")
-        outputs.append(f"%guard{j}")
-    for v, name in enumerate(outputs):
+    code, outputs, flags = _evaluation(program, shape, "%in", "%stride", "%l")
+    lines += code
+    for v, name in enumerate([*outputs, *flags]):
         lines += store(shape, "%out", f"{v}", "%stride", "%l", name, f"%out{v}")
     lines += [f"  %next = add i64 %l, {width}", "  %more = icmp slt i64 %next, %lane1"]
     lines += ["  br i1 %more, label %lane, label %end", "end:", "  ret void", "}"]
     return "\n".join([*llvm.declarations(shape), *lines, llvm.ATTRIBUTES])
 
 
+def _evaluation(
+    program: Program, shape: llvm.Shape, base: str, stride: str, lane: str
+) -> tuple[list[str], list[str], list[str]]:
+    """Return IR that evaluates a program, the names of its outputs and of its status flags."""
+    lines, names = [], [f"%in{v}" for v in range(len(program.inputs))]
+    for v, name in enumerate(names):
+        lines += load(shape, base, f"{v}", stride, lane, name)
+    code = llvm.body(scheduled(program), names, shape, "v")
+    lines += [f"  {line}" for line in code.lines]
+    good, raised = (f"{shape.real} {shape.constant(value)}" for value in (0.0, 1.0))
+    flags = []
+    for j, condition in enumerate(code.guards.values()):
+        flags.append(f"%guard{j}")
+        lines.append(f"  {flags[j]} = select {shape.boolean} {condition}, {good}, {raised}")
+    return lines, code.outputs, flags
+
+
 def load(shape: llvm.Shape, base: str, row: str, stride: str, lane: str, name: str) -> list[str]:
     """Return IR that loads lanes ``lane...`` of row ``row``."""
-    return [*_address(base, row, stride, lane, name), f"  {name} = load {shape.real}, ptr {name}.p, align 8"]
+    return [
+        *_address(base, row, stride, lane, name),
+        f"  {name} = load {shape.real}, ptr {name}.p, align 8",
+    ]
 
 
-def store(shape: llvm.Shape, base: str, row: str, stride: str, lane: str, value: str, name: str) -> list[str]:
+def store(
+    shape: llvm.Shape, base: str, row: str, stride: str, lane: str, value: str, name: str
+) -> list[str]:
     """Return IR that stores lanes ``lane...`` of row ``row``."""
-    return [*_address(base, row, stride, lane, name), f"  store {shape.real} {value}, ptr {name}.p, align 8"]
+    return [
+        *_address(base, row, stride, lane, name),
+        f"  store {shape.real} {value}, ptr {name}.p, align 8",
+    ]
 
 
 def _address(base: str, row: str, stride: str, lane: str, name: str) -> list[str]:
@@ -68,18 +84,11 @@ def call_source(program: Program, carried: int) -> str:
     """
     shape = llvm.Shape(1)
     count = len(program.inputs)
-    lines = ["define void @call(ptr %io) #0 {"]
-    for v in range(count):
-        lines += load(shape, "%io", f"{v}", "1", "0", f"%in{v}")
-    code = llvm.body(scheduled(program), [f"%in{v}" for v in range(count)], shape, "v")
-    lines += [f"  {line}" for line in code.lines]
-    outputs, guards = code.outputs, code.guards
-    for j, condition in enumerate(guards.values()):
-        zero, one = shape.constant(0.0), shape.constant(1.0)
-        lines.append(f"  %guard{j} = select {shape.boolean} {condition}, {shape.real} {zero}, {shape.real} {one}")
+    code, outputs, flags = _evaluation(program, shape, "%io", "1", "0")
+    lines = ["define void @call(ptr %io) #0 {", *code]
     fresh = len(outputs) - carried
-    values = [*outputs[:fresh], *[f"%guard{j}" for j in range(len(guards))], *outputs[fresh:]]
-    rows = [*range(count, count + fresh + len(guards)), *range(count - carried, count)]
+    values = [*outputs[:fresh], *flags, *outputs[fresh:]]
+    rows = [*range(count, count + fresh + len(flags)), *range(count - carried, count)]
     for row, name in zip(rows, values, strict=True):
         lines += store(shape, "%io", f"{row}", "1", "0", name, f"%out{row}")
     return "\n".join([*llvm.declarations(shape), *lines, "  ret void", "}", llvm.ATTRIBUTES])
@@ -130,17 +139,21 @@ def _unrows(like: Any, rows: Any, count: int) -> Any:
     values = [next(rows) for _ in tree.flatten(like)]
     if not isinstance(like, np.ndarray):
         return values[0]
-    return np.stack(values, axis=-1).reshape(count, *like.shape) if values else np.empty((count, *like.shape))
+    return (
+        np.stack(values, axis=-1).reshape(count, *like.shape)
+        if values
+        else np.empty((count, *like.shape))
+    )
 
 
 def compile_function(
     function: Callable[..., Any], *examples: Any, width: int | None = None, fuse: bool | None = None
 ) -> CompiledFunction:
-    """Trace and compile ``function``; ``examples`` show each argument's shape (without batch axis).
+    """Trace and compile ``function``.
 
     Args:
         function: Source without data-dependent branches.
-        *examples: Floats, arrays or tuples of them.
+        *examples: Floats, arrays or tuples of them: the shape of each argument without batch axis.
         width: Lanes of a vector; the host's by default.
         fuse: Fuse multiply-adds; by default where the CPU has the instruction.
 

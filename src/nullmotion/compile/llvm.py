@@ -74,7 +74,9 @@ def _target_machine(level: int) -> Any:
 
     target = llvm.Target.from_default_triple()
     machine = host()
-    return target.create_target_machine(cpu=machine.cpu, features=machine.features, opt=level, jit=True)
+    return target.create_target_machine(
+        cpu=machine.cpu, features=machine.features, opt=level, jit=True
+    )
 
 
 def hexadecimal(value: float) -> str:
@@ -166,7 +168,9 @@ def body(
     return Body(lines, before, [names[o] for o in program.outputs], guards)
 
 
-def _instruction(program: Program, i: int, names: dict[int, str], shape: Shape, prefix: str) -> list[str]:
+def _instruction(
+    program: Program, i: int, names: dict[int, str], shape: Shape, prefix: str
+) -> list[str]:
     node = program.nodes[i]
     operands = dict(zip("abc", node.args, strict=False))
 
@@ -176,13 +180,24 @@ def _instruction(program: Program, i: int, names: dict[int, str], shape: Shape, 
             return shape.splat("i64", str(63 - int(program.nodes[operands[text]].value)))  # type: ignore[arg-type]
         if kind == "mask":
             return shape.splat("i64", str(1 << int(program.nodes[operands[text]].value)))  # type: ignore[arg-type]
-        return shape.splat("double", hexadecimal(float(text))) if kind == "real" else shape.splat("i64", text)
+        return (
+            shape.splat("double", hexadecimal(float(text)))
+            if kind == "real"
+            else shape.splat("i64", text)
+        )
 
     text = _PLACEHOLDER.sub(special, OPERATIONS[node.op].llvm)
     fields = {k: names[v] for k, v in operands.items()}
     temporaries = {f"t{j}": f"%{prefix}{i}.{j}" for j in range(6)}
-    types = {"V": shape.real, "I": shape.integer, "B": shape.boolean, "true": shape.splat("i1", "true")}
-    return text.format(r=names[i], sfx=f"v{shape.width}f64", **fields, **temporaries, **types).splitlines()
+    types = {
+        "V": shape.real,
+        "I": shape.integer,
+        "B": shape.boolean,
+        "true": shape.splat("i1", "true"),
+    }
+    return text.format(
+        r=names[i], sfx=f"v{shape.width}f64", **fields, **temporaries, **types
+    ).splitlines()
 
 
 def declarations(shape: Shape) -> list[str]:
@@ -192,7 +207,10 @@ def declarations(shape: Shape) -> list[str]:
     return [f"declare {v} @llvm.{name}.{suffix}({', '.join([v] * n)})" for name, n in arity.items()]
 
 
-ATTRIBUTES = 'attributes #0 = { nounwind alignstack=64 "prefer-vector-width"="512" "min-legal-vector-width"="512" }'
+ATTRIBUTES = (
+    "attributes #0 = { nounwind alignstack=64 "
+    '"prefer-vector-width"="512" "min-legal-vector-width"="512" }'
+)
 
 
 @lru_cache(maxsize=64)
@@ -220,7 +238,7 @@ class Machine:
     def function(self, name: str, *argument_types: Any) -> Any:
         """Return a compiled function, callable from Python (releases the GIL)."""
         address = self._engine.get_function_address(name)
-        function = ctypes.CFUNCTYPE(None, *argument_types)(address)
+        function: Any = ctypes.CFUNCTYPE(None, *argument_types)(address)
         function.owner = self  # the code must outlive the function
         return function
 

@@ -18,7 +18,7 @@ import numpy as np
 from nullmotion import tree
 from nullmotion.compile import carry, llvm
 from nullmotion.compile.function import load, store
-from nullmotion.compile.program import Program, finish
+from nullmotion.compile.program import Program, finish, ordered, reachable
 from nullmotion.compile.schedule import scheduled
 from nullmotion.compile.tape import Symbol, Tape, tracing
 
@@ -123,7 +123,12 @@ def _trace_start(loop: Loop, fuse: bool) -> tuple[Program, Any]:
 
 
 def _trace_stages(
-    loop: Loop, stages: Sequence[tuple[int, Stage]], like: Any, recording: bool, fuse: bool, whole: bool
+    loop: Loop,
+    stages: Sequence[tuple[int, Stage]],
+    like: Any,
+    recording: bool,
+    fuse: bool,
+    whole: bool,
 ) -> tuple[_Piece, Any]:
     """Trace consecutive stages as one program; return it and the record.
 
@@ -157,7 +162,9 @@ def _trace_stages(
     return _Piece(program, period, phase, len(kept), prime), record
 
 
-def _trace_view(loop: Loop, function: Callable[[Any, Any], Any], like: Any, fuse: bool) -> tuple[Program, Any]:
+def _trace_view(
+    loop: Loop, function: Callable[[Any, Any], Any], like: Any, fuse: bool
+) -> tuple[Program, Any]:
     tape = Tape()
     state, inputs = _symbolic(tape, like, "s")
     parameters, more = _parameters(tape, loop)
@@ -191,16 +198,19 @@ def trace_loop(loop: Loop, recording: bool, fuse: bool) -> _Trace:
 def _groups(loop: Loop) -> list[list[tuple[int, Stage]]]:
     groups: list[list[tuple[int, Stage]]] = []
     for item in enumerate(loop.stages):
-        same = groups and (groups[-1][-1][1].period, groups[-1][-1][1].phase) == (item[1].period, item[1].phase)
+        same = groups and (groups[-1][-1][1].period, groups[-1][-1][1].phase) == (
+            item[1].period,
+            item[1].phase,
+        )
         groups[-1].append(item) if same else groups.append([item])
     return groups
 
 
 def _dependence(program: Program) -> list[int]:
-    """Return for each output the inputs that it depends on, as a bit mask."""
+    """Return for each node the inputs that it depends on, as a bit mask."""
     masks = [0] * len(program.nodes)
-    for bit, node in enumerate(program.inputs):
-        masks[node] = 1 << bit
+    for bit, i in enumerate(program.inputs):
+        masks[i] = 1 << bit
     for i, node in enumerate(program.nodes):
         for a in node.args:
             masks[i] |= masks[a]
@@ -237,22 +247,9 @@ def _live_state(size: int, pieces: Sequence[_Piece], views: Sequence[Program]) -
 def _cut(program: Program, keep_inputs: Sequence[int], keep_outputs: Sequence[int]) -> Program:
     """Return the program with only some outputs; inputs not kept must be unused then."""
     outputs = [program.outputs[i] for i in keep_outputs]
-    needed: set[int] = set()
-    stack = [*outputs, *program.guards.values()]
-    while stack:
-        i = stack.pop()
-        if i not in needed:
-            needed.add(i)
-            stack.extend(program.nodes[i].args)
     inputs = [program.inputs[i] for i in keep_inputs]
-    order = [i for i in range(len(program.nodes)) if i in needed or i in set(inputs)]
-    number = {old: new for new, old in enumerate(order)}
-    nodes = tuple(
-        type(program.nodes[i])(program.nodes[i].op, tuple(number[a] for a in program.nodes[i].args), program.nodes[i].value)
-        for i in order
-    )
-    guards = {flag: number[g] for flag, g in program.guards.items()}
-    return Program(nodes, tuple(number[i] for i in inputs), tuple(number[i] for i in outputs), guards)
+    needed = reachable(program.nodes, [*outputs, *program.guards.values()]).union(inputs)
+    return ordered(program.nodes, sorted(needed), inputs, outputs, program.guards)
 
 
 class _Writer:
@@ -270,10 +267,20 @@ class _Writer:
 
     def source(self) -> str:
         """Return the module's text."""
-        arguments = "ptr noalias %state, ptr noalias %parameters, ptr noalias %schedule, ptr noalias %history, ptr noalias %out"
-        numbers = "i64 %stride, i64 %total, i64 %offset, i64 %lane0, i64 %lane1, i64 %k0, i64 %k1, i64 %last, i64 %every"
-        self.lines += [f"define void @loop({arguments}, {numbers}) #0 {{", "entry:", "  br label %lane", "lane:"]
-        self.lines += ["  %l = phi i64 [%lane0, %entry], [%lnext, %lend]", "  %lo = add i64 %l, %offset"]
+        pointers = ("state", "parameters", "schedule", "history", "out")
+        whole = ("stride", "total", "offset", "lane0", "lane1", "k0", "k1", "last", "every")
+        arguments = ", ".join(f"ptr noalias %{name}" for name in pointers)
+        numbers = ", ".join(f"i64 %{name}" for name in whole)
+        self.lines += [
+            f"define void @loop({arguments}, {numbers}) #0 {{",
+            "entry:",
+            "  br label %lane",
+            "lane:",
+        ]
+        self.lines += [
+            "  %l = phi i64 [%lane0, %entry], [%lnext, %lend]",
+            "  %lo = add i64 %l, %offset",
+        ]
         for j in range(self.parameters):
             self.lines += load(self.shape, "%parameters", str(j), "%total", "%lo", f"%p{j}")
         self._begin()
@@ -282,7 +289,9 @@ class _Writer:
         self.lines[entry:entry] = self.ahead
         self._end(current)
         self.lines.append("}")
-        return "\n".join([*llvm.declarations(self.shape), *self._reductions(), *self.lines, llvm.ATTRIBUTES])
+        return "\n".join(
+            [*llvm.declarations(self.shape), *self._reductions(), *self.lines, llvm.ATTRIBUTES]
+        )
 
     def _reductions(self) -> list[str]:
         return [f"declare i1 @llvm.vector.reduce.or.v{self.shape.width}i1({self.shape.boolean})"]
@@ -298,26 +307,35 @@ class _Writer:
     def _raise(self, flags: Sequence[str], guards: dict[str, str], prefix: str) -> list[str]:
         """Return the flag values after guards of one piece."""
         out = list(flags)
-        one = self.shape.constant(1.0)
+        real, one = self.shape.real, self.shape.constant(1.0)
         for j, flag in enumerate(self.traced.flags):
             if flag in guards:
                 name = f"%{prefix}flag{j}"
-                self.lines.append(f"  {name} = select {self.shape.boolean} {guards[flag]}, {self.shape.real} {flags[j]}, {self.shape.real} {one}")
+                test = f"{self.shape.boolean} {guards[flag]}"
+                self.lines.append(f"  {name} = select {test}, {real} {flags[j]}, {real} {one}")
                 out[j] = name
         return out
 
     def _begin(self) -> None:
         """At k0 = 0 the state comes from the parameters, later from memory."""
         names = [f"%p{j}" for j in range(self.parameters)]
-        self.lines += ["  %fresh = icmp eq i64 %k0, 0", "  br i1 %fresh, label %start, label %resume", "start:"]
-        outputs, guards = self._body(_cut(self.traced.start, range(self.parameters), self.traced.live), names, "b")
+        self.lines += [
+            "  %fresh = icmp eq i64 %k0, 0",
+            "  br i1 %fresh, label %start, label %resume",
+            "start:",
+        ]
+        outputs, guards = self._body(
+            _cut(self.traced.start, range(self.parameters), self.traced.live), names, "b"
+        )
         flags = self._raise([self.shape.constant(0.0)] * len(self.traced.flags), guards, "b")
         self.lines += ["  br label %begin", "resume:"]
         for j in range(self.carried):
             self.lines += load(self.shape, "%state", str(j), "%stride", "%l", f"%m{j}")
         self.lines += ["  br label %begin", "begin:"]
         for j, value in enumerate([*outputs, *flags]):
-            self.lines.append(f"  %i{j} = phi {self.shape.real} [{value}, %start], [%m{j}, %resume]")
+            self.lines.append(
+                f"  %i{j} = phi {self.shape.real} [{value}, %start], [%m{j}, %resume]"
+            )
         self.first = [f"%i{j}" for j in range(self.carried)]
         if self.extra:
             prime = self.traced.pieces[0].prime
@@ -370,13 +388,18 @@ class _Writer:
             names.append(f"%row{j}")
         return names
 
-    def _piece(self, index: int, piece: _Piece, current: list[str], row: list[str], base: int) -> list[str]:
+    def _piece(
+        self, index: int, piece: _Piece, current: list[str], row: list[str], base: int
+    ) -> list[str]:
         live = self.traced.live
         others = range(self.size, self.size + self.parameters + 1 + self.loop.row + self.extra)
         outputs = [*live, *range(self.size, self.size + piece.records + self.extra)]
         program = scheduled(_cut(piece.program, [*live, *others], outputs))
         inputs = [
-            *current[: self.states], *[f"%p{j}" for j in range(self.parameters)], "%kv", *row,
+            *current[: self.states],
+            *[f"%p{j}" for j in range(self.parameters)],
+            "%kv",
+            *row,
             *current[self.carried :],
         ]
         conditional = piece.period > 1
@@ -399,7 +422,9 @@ class _Writer:
         self.lines += [f"  br label %join{index}", f"join{index}:"]
         names = [f"%j{index}_{j}" for j in range(self.carried)]
         for name, value, old in zip(names, after, current, strict=True):
-            self.lines.append(f"  {name} = phi {self.shape.real} [{value}, %do{index}], [{old}, %pre{index}]")
+            self.lines.append(
+                f"  {name} = phi {self.shape.real} [{value}, %do{index}], [{old}, %pre{index}]"
+            )
         return names
 
     def _history(self, index: int, values: Sequence[str], base: int) -> None:
@@ -425,7 +450,9 @@ class _Writer:
             return "%more"
         outputs = self._view(self.traced.active, states, "a")
         w = self.shape.width
-        self.lines.append(f"  %any = call i1 @llvm.vector.reduce.or.v{w}i1({self.shape.boolean} {outputs[0]})")
+        self.lines.append(
+            f"  %any = call i1 @llvm.vector.reduce.or.v{w}i1({self.shape.boolean} {outputs[0]})"
+        )
         self.lines.append("  %going = and i1 %any, %more")
         return "%going"
 
@@ -440,12 +467,19 @@ class _Writer:
         current = current[: self.carried]
         for j, name in enumerate(current):
             self.lines += store(self.shape, "%state", str(j), "%stride", "%l", name, f"%e{j}")
-        self.lines += ["  %final = icmp eq i64 %last, 1", "  br i1 %final, label %write, label %lend", "write:"]
+        self.lines += [
+            "  %final = icmp eq i64 %last, 1",
+            "  br i1 %final, label %write, label %lend",
+            "write:",
+        ]
         outputs = self._view(self.traced.outputs, current[: self.states], "o")
         for j, name in enumerate([*outputs, *current[self.states :]]):
             self.lines += store(self.shape, "%out", str(j), "%total", "%lo", name, f"%w{j}")
         self.lines += ["  br label %lend", "lend:", f"  %lnext = add i64 %l, {self.shape.width}"]
-        self.lines += ["  %lmore = icmp slt i64 %lnext, %lane1", "  br i1 %lmore, label %lane, label %end"]
+        self.lines += [
+            "  %lmore = icmp slt i64 %lnext, %lane1",
+            "  br i1 %lmore, label %lane, label %end",
+        ]
         self.lines += ["end:", "  ret void"]
 
 
@@ -464,7 +498,9 @@ class LoopKernel:
         operations: Tape operations of one step.
     """
 
-    def __init__(self, loop: Loop, *, recording: bool = False, width: int | None = None, level: int = 2) -> None:
+    def __init__(
+        self, loop: Loop, *, recording: bool = False, width: int | None = None, level: int = 2
+    ) -> None:
         """Trace and compile a loop."""
         machine = llvm.host()
         self.loop = loop
@@ -480,7 +516,8 @@ class LoopKernel:
         self.outputs = len(traced.outputs.outputs)
         self.records = sum(p.records for p in traced.pieces)
         self.operations = sum(
-            _cut(p.program, range(len(p.program.inputs)), traced.live).operations for p in traced.pieces
+            _cut(p.program, range(len(p.program.inputs)), traced.live).operations
+            for p in traced.pieces
         )
 
     def run(
@@ -497,19 +534,37 @@ class LoopKernel:
         last: bool,
         every: int = 1,
     ) -> None:
-        """Advance ``lanes`` runs, from column ``offset`` of parameters and out, through steps k0..k1-1.
+        """Advance ``lanes`` runs through steps k0..k1-1.
 
-        All arrays are C-contiguous doubles: state (carried, lanes), parameters and out
-        (rows, runs), history (samples, records, lanes) with a sample ``every`` so many steps.
-        Releases the GIL.
+        Their parameters and outputs begin at column ``offset``. All arrays are C-contiguous
+        doubles: state (carried, lanes), parameters and out (rows, runs), history (samples,
+        records, lanes) with a sample ``every`` so many steps. Releases the GIL.
         """
         self._run(
-            state.ctypes.data, parameters.ctypes.data, schedule.ctypes.data, history.ctypes.data, out.ctypes.data,
-            state.shape[1], out.shape[1], offset, 0, lanes, k0, k1, int(last), every,
+            state.ctypes.data,
+            parameters.ctypes.data,
+            schedule.ctypes.data,
+            history.ctypes.data,
+            out.ctypes.data,
+            state.shape[1],
+            out.shape[1],
+            offset,
+            0,
+            lanes,
+            k0,
+            k1,
+            int(last),
+            every,
         )
 
 
-def run_on_host(loop: Loop, steps: int, schedule: np.ndarray, on_step: Callable[[int], None] | None = None, recording: bool = False) -> tuple[Any, list[Any]]:
+def run_on_host(
+    loop: Loop,
+    steps: int,
+    schedule: np.ndarray,
+    on_step: Callable[[int], None] | None = None,
+    recording: bool = False,
+) -> tuple[Any, list[Any]]:
     """Run one loop in plain Python, with the floats of ``loop.parameters``.
 
     Returns:

@@ -100,8 +100,18 @@ def _rsqrt_guess(a: Any) -> Any:
     return (np.uint64(_RSQRT_MAGIC) - (raw >> np.uint64(1))).view(np.float64)[()]
 
 
-def _binary(name: str, evaluate: Callable[..., Any], llvm: str, c: str, commutative: bool = False) -> Operation:
-    return Operation(name, ("real", "real"), "real", evaluate, f"{{r}} = {llvm} {{V}} {{a}}, {{b}}", c, commutative)
+def _binary(
+    name: str, evaluate: Callable[..., Any], llvm: str, c: str, commutative: bool = False
+) -> Operation:
+    return Operation(
+        name,
+        ("real", "real"),
+        "real",
+        evaluate,
+        f"{{r}} = {llvm} {{V}} {{a}}, {{b}}",
+        c,
+        commutative,
+    )
 
 
 def _compare(name: str, evaluate: Callable[..., Any], predicate: str, c: str) -> Operation:
@@ -110,7 +120,9 @@ def _compare(name: str, evaluate: Callable[..., Any], predicate: str, c: str) ->
 
 
 def _logic(name: str, evaluate: Callable[..., Any], llvm: str, c: str) -> Operation:
-    return Operation(name, ("bool", "bool"), "bool", evaluate, f"{{r}} = {llvm} {{B}} {{a}}, {{b}}", c, True)
+    return Operation(
+        name, ("bool", "bool"), "bool", evaluate, f"{{r}} = {llvm} {{B}} {{a}}, {{b}}", c, True
+    )
 
 
 def _unary(name: str, evaluate: Callable[..., Any], llvm: str, c: str) -> Operation:
@@ -120,7 +132,8 @@ def _unary(name: str, evaluate: Callable[..., Any], llvm: str, c: str) -> Operat
 def _intrinsic(name: str, evaluate: Callable[..., Any], c: str, arity: int = 1) -> Operation:
     args = ", ".join(f"{{V}} {{{x}}}" for x in "abc"[:arity])
     llvm = f"{{r}} = call {{V}} @llvm.{name}.{{sfx}}({args})"
-    return Operation(name, ("real",) * arity, "real", evaluate, llvm, c)
+    real: Kind = "real"
+    return Operation(name, (real,) * arity, real, evaluate, llvm, c)
 
 
 _TABLE = (
@@ -195,7 +208,9 @@ _TABLE = (
         ("real", "real"),
         "bool",
         _raw_bit,
-        "{t0} = bitcast {V} {a} to {I}\n{t1} = and {I} {t0}, {mask:b}\n{r} = icmp ne {I} {t1}, {bits:0}",
+        "{t0} = bitcast {V} {a} to {I}\n"
+        "{t1} = and {I} {t0}, {mask:b}\n"
+        "{r} = icmp ne {I} {t1}, {bits:0}",
         "nm_raw_bit({a}, {b})",
     ),
     Operation(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -56,7 +56,8 @@ def trace(function: Callable[..., Any], *examples: Any, fuse: bool = True) -> tu
         TraceError: When the source decides by a value; names file and line.
     """
     tape = Tape()
-    arguments, inputs = [], []
+    arguments: list[Any] = []
+    inputs: list[Symbol] = []
     for i, example in enumerate(examples):
         symbols = tape.inputs(f"x{i}", len(tree.flatten(example)))
         inputs.extend(symbols)
@@ -90,16 +91,29 @@ def finish(
         nodes = [Node(n.op, tuple(replace.get(a, a) for a in n.args), n.value) for n in nodes]
     roots = [*ids, *guards.values()]
     if fuse:
-        _fuse(nodes, _live(nodes, roots), set(roots))
-    keep = _live(nodes, [*roots, *[s.node for s in inputs]])
+        _fuse(nodes, reachable(nodes, roots), set(roots))
+    keep = reachable(nodes, [*roots, *[s.node for s in inputs]])
     # fusing appends: order by depth-first need keeps operands ahead of users
     order = [i for i in _topological(nodes, roots, [s.node for s in inputs]) if i in keep]
+    return ordered(nodes, order, [s.node for s in inputs], ids, guards)
+
+
+def ordered(
+    nodes: Sequence[Node],
+    order: Sequence[int],
+    inputs: Sequence[int],
+    outputs: Sequence[int],
+    guards: Mapping[str, int],
+) -> Program:
+    """Return the program of the nodes named in ``order``, numbered anew."""
     number = {old: new for new, old in enumerate(order)}
-    renumbered = tuple(Node(nodes[i].op, tuple(number[a] for a in nodes[i].args), nodes[i].value) for i in order)
     return Program(
-        renumbered,
-        tuple(number[s.node] for s in inputs),
-        tuple(number[i] for i in ids),
+        tuple(
+            Node(nodes[i].op, tuple(number[a] for a in nodes[i].args), nodes[i].value)
+            for i in order
+        ),
+        tuple(number[i] for i in inputs),
+        tuple(number[i] for i in outputs),
         {flag: number[g] for flag, g in guards.items()},
     )
 
@@ -111,7 +125,8 @@ def _all(tape: Tape, conditions: Sequence[int]) -> int:
     return result
 
 
-def _live(nodes: Sequence[Node], roots: Sequence[int]) -> set[int]:
+def reachable(nodes: Sequence[Node], roots: Iterable[int]) -> set[int]:
+    """Return the roots and all that they are computed from."""
     live: set[int] = set()
     stack = list(roots)
     while stack:

@@ -60,7 +60,7 @@ class Tape:
         out[:] = [self.input(f"{name}[{i}]") for i in range(count)]
         return out
 
-    def constant(self, value: float | bool) -> int:
+    def constant(self, value: float | bool | np.number | np.bool_) -> int:
         """Return the node of a constant; equal bits share one node."""
         plain = bool(value) if isinstance(value, (bool, np.bool_)) else float(value)
         key = ("constant", type(plain), repr(plain))
@@ -86,9 +86,11 @@ class Tape:
         nodes = [self.nodes[i] for i in args]
         if all(n.op == "constant" for n in nodes):
             with np.errstate(all="ignore"):
-                return self.constant(np.asarray(OPERATIONS[op].evaluate(*[n.value for n in nodes]))[()])
+                value: Any = OPERATIONS[op].evaluate(*[n.value for n in nodes])
+            return self.constant(np.asarray(value).item())
         rule = _RULES.get(op)
-        return rule(self, args, [n.value if n.op == "constant" else None for n in nodes]) if rule else None
+        known = [n.value if n.op == "constant" else None for n in nodes]
+        return rule(self, args, known) if rule else None
 
     def guard(self, flag: str, condition: int) -> None:
         """Remember that ``condition`` must hold, or the status ``flag`` is raised."""
@@ -210,7 +212,9 @@ def tracing() -> Iterator[None]:
             if not _machinery(frame.tb_frame.f_code.co_filename):
                 place = (frame.tb_frame.f_code.co_filename, frame.tb_lineno)
             frame = frame.tb_next
-        raise TraceError(f"this line does not work on symbols ({type(error).__name__}: {error})", *place) from error
+        raise TraceError(
+            f"this line does not work on symbols ({type(error).__name__}: {error})", *place
+        ) from error
 
 
 class Symbol:
@@ -320,7 +324,8 @@ class Symbol:
         file, line = _user_frame()
         raise TraceError(
             "this line decides by a value that is not known while the source is traced; "
-            "use nullmotion.ops.where, minimum, maximum, clip or sign instead of if, and, or, min, max",
+            "use nullmotion.ops.where, minimum, maximum, clip or sign "
+            "instead of if, and, or, min, max",
             file,
             line,
         )
@@ -330,7 +335,9 @@ class Symbol:
         if node.op == "constant":
             return float(node.value)  # type: ignore[arg-type]
         file, line = _user_frame()
-        raise TraceError("this line needs the number behind a value that is still a symbol", file, line)
+        raise TraceError(
+            "this line needs the number behind a value that is still a symbol", file, line
+        )
 
     def __repr__(self) -> str:
         node = self.tape.nodes[self.node]

@@ -29,8 +29,8 @@ def create(name: str, **parameters: Any) -> Law:
     cls = get(name)
     known = {f.name for f in dataclasses.fields(cls)}
     for key in parameters:
-        if key not in known:
-            raise UnknownNameError(f"law.{key}", key, known) if known else InputError(
-                f"law.{key}", parameters[key], f"no parameters: law {name!r} has none"
-            )
+        if key not in known and known:
+            raise UnknownNameError(f"law.{key}", key, known)
+        if not known:
+            raise InputError(f"law.{key}", parameters[key], f"no parameters: law {name!r} has none")
     return cls(**parameters)

@@ -85,10 +85,18 @@ class PaperResult:
         lines = [f"# {self.title}", "", _sentence(self.counts()), ""]
         for table in dict.fromkeys(cell.table for cell in self.cells):
             lines += [f"## Table {table}" if table[0].isdigit() else f"## {table.capitalize()}", ""]
-            lines += ["| row | column | published | computed | tolerance | parameters | status | note |"]
+            lines += [
+                "| row | column | published | computed | tolerance | parameters | status | note |"
+            ]
             lines += ["|---|---|---|---|---|---|---|---|"]
             for c in (c for c in self.cells if c.table == table):
-                cells = (c.row, c.column, _text(c.published), _text(c.computed), _text(c.tolerance or None))
+                cells = (
+                    c.row,
+                    c.column,
+                    _text(c.published),
+                    _text(c.computed),
+                    _text(c.tolerance or None),
+                )
                 lines.append("| " + " | ".join([*cells, c.parameters, c.status, c.note]) + " |")
             lines.append("")
         return "\n".join(lines)

@@ -50,7 +50,7 @@ def stop_model() -> type[schema.StopSection]:
 @cache
 def _stop_model(names: tuple[str, ...]) -> type[schema.StopSection]:
     keys = [f"{name}_{side}" for name in names for side in ("below", "above")]
-    fields: Any = {key: (float | None, None) for key in keys}
+    fields: Any = dict.fromkeys(keys, (float | None, None))
     return create_model("Stop", __base__=schema.StopSection, **fields)
 
 

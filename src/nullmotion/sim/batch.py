@@ -89,7 +89,9 @@ def run_batch(
     if history:
         check_history(base, runs, history)
     few = runs * base.steps < _WORK  # soon done: what is quickly compiled is enough
-    kernel = LoopKernel(loop(base, varying), recording=bool(history), width=llvm.host().lanes if few else None)
+    kernel = LoopKernel(
+        loop(base, varying), recording=bool(history), width=llvm.host().lanes if few else None
+    )
     job = _Job(kernel, base, values, history)
     _spread(job, runs, threads or os.cpu_count() or 1, progress)
     return job.result(runs)
@@ -104,7 +106,9 @@ def _values(
     columns: dict[int, np.ndarray] = {}
     runs = {len(x) for x in (delta, hdot, setups) if x is not None}
     if len(runs) > 1 or not runs or 0 in runs:
-        raise InputError("runs", sorted(runs), "the same number of runs (at least one) in every value")
+        raise InputError(
+            "runs", sorted(runs), "the same number of runs (at least one) in every value"
+        )
     count = runs.pop()
     if setups is not None:
         columns.update(_differing(base, setups))
@@ -119,7 +123,9 @@ def _values(
             raise InputError("hdot", table.shape, "no constant commands: this setup has a schedule")
         columns.update({at[name] + j: table[:, j] for j in range(width)})
     varying = tuple(i in columns for i in range(len(leaves)))
-    return np.array([np.broadcast_to(columns[i], (count,)) for i in sorted(columns)]).reshape(-1, count), varying
+    return np.array([np.broadcast_to(columns[i], (count,)) for i in sorted(columns)]).reshape(
+        -1, count
+    ), varying
 
 
 def _differing(base: Setup, setups: Sequence[Setup]) -> dict[int, np.ndarray]:
@@ -127,7 +133,11 @@ def _differing(base: Setup, setups: Sequence[Setup]) -> dict[int, np.ndarray]:
     rows = []
     for i, setup in enumerate(setups):
         if structure(setup) != like:
-            raise InputError(f"setups[{i}]", setup.law.name, "the same structure as the first (numbers may differ)")
+            raise InputError(
+                f"setups[{i}]",
+                setup.law.name,
+                "the same structure as the first (numbers may differ)",
+            )
         rows.append(tree.flatten(parameters(setup)))
     table = np.array(rows, float)
     return {i: table[:, i] for i in range(table.shape[1]) if not (table[:, i] == table[0, i]).all()}
@@ -135,7 +145,14 @@ def _differing(base: Setup, setups: Sequence[Setup]) -> dict[int, np.ndarray]:
 
 def structure(setup: Setup) -> Any:
     """Return what two setups must share to run in one kernel."""
-    rest = (setup.steps, setup.period_steps, setup.delay_steps, setup.integrator, setup.metrics, setup.hdot.shape)
+    rest = (
+        setup.steps,
+        setup.period_steps,
+        setup.delay_steps,
+        setup.integrator,
+        setup.metrics,
+        setup.hdot.shape,
+    )
     table = setup.hdot.tobytes() if setup.scheduled else b""
     stops = tuple((s.metric, s.below) for s in setup.stop)
     return (tree.structure(parameters(setup)), rest, table, stops)
@@ -161,14 +178,30 @@ class _Job:
         """Run ``lanes`` runs from column ``start``; return how many."""
         kernel, total = self.kernel, self.base.steps + 1
         state = np.zeros((kernel.carried, lanes))
-        shape = (self.base.steps // self.every + 1, kernel.records, lanes) if self.history is not None else (1,)
+        shape = (
+            (self.base.steps // self.every + 1, kernel.records, lanes)
+            if self.history is not None
+            else (1,)
+        )
         history = np.empty(shape)
         stride = max(1, _WORK // lanes)
         for k0 in range(0, total, stride):
             if self.stopped.is_set():
                 return 0
             k1 = min(k0 + stride, total)
-            kernel.run(state, self.values, self.rows, history, self.out, start, lanes, k0, k1, k1 == total, self.every)
+            kernel.run(
+                state,
+                self.values,
+                self.rows,
+                history,
+                self.out,
+                start,
+                lanes,
+                k0,
+                k1,
+                k1 == total,
+                self.every,
+            )
         if self.history is not None:
             runs = min(lanes, len(self.history) - start)
             self.history[start : start + runs] = history[:, :, :runs].transpose(2, 0, 1)
@@ -181,7 +214,9 @@ class _Job:
         outcome: Outcome = _gather(kernel.traced.output_like, rows)
         flags = self.out[kernel.outputs :, :runs].astype(bool)
         status = dict(zip(kernel.flags, flags, strict=True))
-        status["non-finite"] = ~(np.isfinite(outcome.delta).all(axis=1) & np.isfinite(outcome.rates).all(axis=1))
+        status["non-finite"] = ~(
+            np.isfinite(outcome.delta).all(axis=1) & np.isfinite(outcome.rates).all(axis=1)
+        )
         code = outcome.stop.astype(int)
         reasons = ["end of run", *[s.reason for s in base.stop]]
         history = None
@@ -239,7 +274,9 @@ def _spread(job: _Job, runs: int, threads: int, progress: Progress | None) -> No
             raise
 
 
-def run_each(setups: Sequence[Setup], progress: Progress | None = None, **options: Any) -> list[Any]:
+def run_each(
+    setups: Sequence[Setup], progress: Progress | None = None, **options: Any
+) -> list[Any]:
     """Run setups one after another (host laws, different structures); return trajectories."""
     results = []
     for i, setup in enumerate(setups):

@@ -23,7 +23,9 @@ _SLICE = 200_000  # steps between two looks at progress and Ctrl-C
 _SHORT = 20_000  # runs below this finish sooner with quickly made code
 
 
-def run(setup: Setup, *, backend: Backend = "auto", decimate: int = 1, progress: Progress | None = None) -> Trajectory:
+def run(
+    setup: Setup, *, backend: Backend = "auto", decimate: int = 1, progress: Progress | None = None
+) -> Trajectory:
     """Return the trajectory of a setup.
 
     Args:
@@ -49,7 +51,9 @@ def run(setup: Setup, *, backend: Backend = "auto", decimate: int = 1, progress:
         except TraceError as error:
             if backend == "kernel":
                 raise
-            warnings.warn(f"{setup.law.name}: runs uncompiled, slower: {error}", RuntimeWarning, stacklevel=2)
+            warnings.warn(
+                f"{setup.law.name}: runs uncompiled, slower: {error}", RuntimeWarning, stacklevel=2
+            )
     return _run_python(setup, what, decimate, progress)
 
 
@@ -68,11 +72,16 @@ def check_history(setup: Setup, runs: int, decimate: int) -> None:
 
     values = 3 * setup.array.n + 3 * setup.array.m
     need = 8 * runs * (setup.steps // decimate + 1) * values
-    have = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") if hasattr(os, "sysconf") else 8 << 30
+    have = (
+        os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+        if hasattr(os, "sysconf")
+        else 8 << 30
+    )
     if need > have // 2:
         raise MemoryLimitError(
-            f"the history of {runs} runs x {setup.steps} steps takes {need / 2**30:.1f} GiB, over half of this "
-            f"machine's memory ({have / 2**30:.1f} GiB): keep fewer steps (decimate) or fewer runs"
+            f"the history of {runs} runs x {setup.steps} steps takes {need / 2**30:.1f} GiB, "
+            f"over half of this machine's memory ({have / 2**30:.1f} GiB): "
+            "keep fewer steps (decimate) or fewer runs"
         )
 
 
@@ -100,7 +109,9 @@ def _run_python(setup: Setup, what: Loop, decimate: int, progress: Progress | No
     with np.errstate(all="ignore"):
         outcome, history = run_on_host(what, total, schedule(setup), step, recording=True)
     kept = history[::decimate]
-    columns = Record(*[np.array([np.asarray(r[i], float) for r in kept]) for i in range(len(Record._fields))])
+    columns = Record(
+        *[np.array([np.asarray(r[i], float) for r in kept]) for i in range(len(Record._fields))]
+    )
     return assemble(setup, outcome, columns, [], decimate, "python", "")
 
 
@@ -114,7 +125,13 @@ def _columns(like: Any, table: np.ndarray) -> Record:
 
 
 def assemble(
-    setup: Setup, outcome: Outcome, columns: Record, flags: list[str], decimate: int, backend: str, instructions: str
+    setup: Setup,
+    outcome: Outcome,
+    columns: Record,
+    flags: list[str],
+    decimate: int,
+    backend: str,
+    instructions: str,
 ) -> Trajectory:
     """Return the trajectory of a run's record and outcome."""
     taken = int(outcome.taken)

@@ -95,7 +95,7 @@ def reductions(metrics: tuple[Metric, ...]) -> list[tuple[Metric, str]]:
 
 
 def loop(setup: Setup, varying: tuple[bool, ...] | None = None) -> Loop:
-    """Return a setup's loop; ``varying`` marks the leaves of `parameters` that differ between runs."""
+    """Return a setup's loop; ``varying`` marks leaves of `parameters` that differ between runs."""
     own = parameters(setup)
     flags = varying or (False,) * len(tree.flatten(own))
     run = _Run(setup)
@@ -143,8 +143,18 @@ class _Run:
         zero = np.zeros(n)
         plant = p.array if p.plant is None else p.plant
         return RunState(
-            0.0, 0.0, p.delta, np.zeros(m), plant.momentum(p.delta), np.zeros(m), zero,
-            (zero,) * queue, zero, zero, p.law.init(p.array, measured), sums,
+            0.0,
+            0.0,
+            p.delta,
+            np.zeros(m),
+            plant.momentum(p.delta),
+            np.zeros(m),
+            zero,
+            (zero,) * queue,
+            zero,
+            zero,
+            p.law.init(p.array, measured),
+            sums,
         )
 
     def command(self, k: Any, row: Any, s: RunState, p: Parameters) -> RunState:
@@ -156,15 +166,22 @@ class _Run:
         sample = self._sample_at(k, s, p)
         for i, condition in reversed(list(enumerate(self.setup.stop))):
             value = condition.metric.of(sample)
-            passed = ops.less(value, p.thresholds[i]) if condition.below else ops.less(p.thresholds[i], value)
+            passed = (
+                ops.less(value, p.thresholds[i])
+                if condition.below
+                else ops.less(p.thresholds[i], value)
+            )
             stop = ops.where(passed, float(i + 1), stop)
         return s._replace(stop=ops.where(ops.equal(s.stop, 0.0), stop, s.stop))
 
     def sample(self, k: Any, row: Any, s: RunState, p: Parameters) -> RunState:
         """Ask the law and queue its limited rates."""
         observation = Observation(
-            delta=s.delta + p.encoder_bias, hdot=s.hdot, t=k * p.dt,
-            period=p.dt * float(self.setup.period_steps), delta_dot=s.rates,
+            delta=s.delta + p.encoder_bias,
+            hdot=s.hdot,
+            t=k * p.dt,
+            period=p.dt * float(self.setup.period_steps),
+            delta_dot=s.rates,
         )
         asked, state = p.law.step(p.array, observation, s.law)
         return s._replace(asked=asked, law=state, queue=(p.array.limited(asked), *s.queue[:-1]))
@@ -181,21 +198,31 @@ class _Run:
         sums = []
         for (metric, reduction), old in zip(reductions(self.setup.metrics), s.sums, strict=True):
             new = _UPDATE[reduction](old, metric.of(sample))
-            sums.append(ops.where(going if metric.needs_rates or reduction in ("rms", "mean") else reached, new, old))
+            sums.append(
+                ops.where(
+                    going if metric.needs_rates or reduction in ("rms", "mean") else reached,
+                    new,
+                    old,
+                )
+            )
         return s._replace(sums=tuple(sums))
 
     def advance(self, k: Any, row: Any, s: RunState, p: Parameters) -> RunState:
         """Move the plant by one step unless the run has ended."""
         plant = p.array if p.plant is None else p.plant
         rates = s.rates
-        delta, impulse = self.integrate(lambda d, _: (rates, plant.jacobian(d) @ rates), s.delta, s.impulse, p.dt)
+        delta, impulse = self.integrate(
+            lambda d, _: (rates, plant.jacobian(d) @ rates), s.delta, s.impulse, p.dt
+        )
         moved = (s.taken + 1.0, delta, impulse, s.wanted + p.dt * s.hdot, rates)
         stayed = (s.taken, s.delta, s.impulse, s.wanted, s.previous)
         going = ops.equal(s.stop, 0.0)
         taken, delta, impulse, wanted, previous = (
             ops.where(going, new, old) for new, old in zip(moved, stayed, strict=True)
         )
-        return s._replace(taken=taken, delta=delta, impulse=impulse, wanted=wanted, previous=previous)
+        return s._replace(
+            taken=taken, delta=delta, impulse=impulse, wanted=wanted, previous=previous
+        )
 
     def _moving(self, s: RunState, p: Parameters) -> Any:
         """Return the rates that the end stops let through."""
@@ -207,8 +234,14 @@ class _Run:
     def _sample_at(self, k: Any, s: RunState, p: Parameters) -> Sample:
         first = ops.equal(s.taken, 0.0)
         return Sample(
-            array=p.array if p.plant is None else p.plant, delta=s.delta, hdot=s.hdot, t=k * p.dt, rates=s.rates,
-            previous_rates=ops.where(first, s.rates, s.previous), momentum_wanted=s.wanted, impulse=s.impulse,
+            array=p.array if p.plant is None else p.plant,
+            delta=s.delta,
+            hdot=s.hdot,
+            t=k * p.dt,
+            rates=s.rates,
+            previous_rates=ops.where(first, s.rates, s.previous),
+            momentum_wanted=s.wanted,
+            impulse=s.impulse,
         )
 
 
