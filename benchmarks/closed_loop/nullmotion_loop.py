@@ -45,11 +45,12 @@ def steering(law: str, array: CmgArray, delta: Any, hdot: Any) -> Any:
     return a.T @ linalg.solve(damped, hdot - a @ null) + null
 
 
-def _derivative(array: CmgArray, rates: Any, q: Any, omega: Any, delta: Any) -> tuple[Any, Any]:
+def _slopes(array: CmgArray, rates: Any, q: Any, omega: Any, delta: Any) -> tuple[Any, Any]:
+    """Return 2 q_dot and J omega_dot: what is constant beside them goes into the step sizes."""
     momentum = w.INERTIA * omega + array.momentum(delta)
     torque = -linalg.cross(omega, momentum) - array.jacobian(delta) @ rates
-    x, y, z = 0.5 * omega
-    q_dot = np.array(
+    x, y, z = omega
+    doubled = np.array(
         [
             -q[1] * x - q[2] * y - q[3] * z,
             q[0] * x + q[2] * z - q[3] * y,
@@ -57,7 +58,7 @@ def _derivative(array: CmgArray, rates: Any, q: Any, omega: Any, delta: Any) -> 
             q[0] * z + q[1] * y - q[2] * x,
         ]
     )
-    return q_dot, torque * (1.0 / w.INERTIA)
+    return doubled, torque
 
 
 def loop(law: str) -> Loop:
@@ -71,14 +72,15 @@ def loop(law: str) -> Loop:
         hdot = -wanted - linalg.cross(s.omega, array.momentum(s.delta))
         rates = array.limited(steering(law, array, s.delta, hdot))
         middle, end = s.delta + (0.5 * dt) * rates, s.delta + dt * rates
-        a, b = _derivative(array, rates, s.q, s.omega, s.delta)
+        u, v = 0.5 * dt, dt / w.INERTIA  # steps of 2 q_dot and of J omega_dot
+        a, b = _slopes(array, rates, s.q, s.omega, s.delta)
         with unguarded():  # between two guarded angles
-            c, d = _derivative(array, rates, s.q + 0.5 * dt * a, s.omega + 0.5 * dt * b, middle)
-            e, f = _derivative(array, rates, s.q + 0.5 * dt * c, s.omega + 0.5 * dt * d, middle)
-            g, h = _derivative(array, rates, s.q + dt * e, s.omega + dt * f, end)
-        q = s.q + (dt / 6.0) * (a + 2.0 * (c + e) + g)
-        omega = s.omega + (dt / 6.0) * (b + 2.0 * (d + f) + h)
-        return State(q * (1.0 / ops.sqrt(q @ q)), omega, end)
+            c, d = _slopes(array, rates, s.q + 0.5 * u * a, s.omega + 0.5 * v * b, middle)
+            e, f = _slopes(array, rates, s.q + 0.5 * u * c, s.omega + 0.5 * v * d, middle)
+            g, h = _slopes(array, rates, s.q + u * e, s.omega + v * f, end)
+        q = s.q + (u / 6.0) * (a + 2.0 * (c + e) + g)
+        omega = s.omega + (v / 6.0) * (b + 2.0 * (d + f) + h)
+        return State(q * ops.rsqrt(q @ q), omega, end)
 
     example = State(np.zeros(4), np.zeros(3), np.zeros(4))
     return Loop(lambda p: p, (Stage(step),), lambda s, p: s, example, (True,) * 11)
