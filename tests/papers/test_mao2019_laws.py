@@ -1,6 +1,6 @@
-"""Mao et al. 2019: rows of Tables 4-7 from the plain source, in a plain Euler loop.
+"""Mao et al. 2019, what its tables do not hold: in a plain Euler loop of a few lines.
 
-The whole set is the business of the paper's own reproduction; this subset pins each law.
+Table 7 is here to the last digit, so that the loop of the reproduction is held to another one.
 """
 
 from __future__ import annotations
@@ -54,34 +54,6 @@ def run(law: Any, hdot: np.ndarray, start: np.ndarray) -> dict[str, Any]:
         "least": least,
         "flags": "".join("NY"[bool(b)] for b in (off > 0.02, jump > 0.5, least < 0.02)),
     }
-
-
-AVOIDANCE = [  # law, command, flags, total time, reserve, tolerances
-    ("PI", 1, "NNN", 1.86, 0.0263, 0.005, 0.0002),
-    ("PI", 3, "NYY", 10.0, 2.0, 0.005, 0.002),
-    ("GSR", 1, "NNN", 1.86, 0.02634, 0.005, 0.0001),
-    ("GSR", 2, "YNY", 5.0, 0.02646, 0.005, 0.0001),
-    ("GSR", 3, "YYY", 4.31, 0.01065, 0.005, 0.0001),
-    ("ODSR1", 1, "YYN", 2.25, 0.03154, 0.005, 0.0001),
-    ("ODSR1", 3, "YYN", 3.55, 0.01724, 0.005, 0.0001),
-    ("ODSR2", 1, "YYN", 2.09, 0.02839, 0.005, 0.0001),
-    ("ODSR2", 3, "YYY", 8.73, 0.02129, 0.005, 0.0001),
-    ("DSEA", 1, "YNN", 1.92, 0.03289, 0.005, 0.0001),
-    ("DSEA", 3, "YNN", 3.86, 0.01628, 0.005, 0.0001),
-    ("VCBSAE", 1, "NNN", 1.86, 0.02563, 0.005, 0.0001),
-    ("VCBSAE", 2, "NNN", 4.99, 0.02588, 0.005, 0.0001),
-    ("VCBSAE", 3, "NNN", 3.33, 0.01236, 0.005, 0.0001),
-]
-
-
-@pytest.mark.parametrize(("law", "command", "flags", "time", "reserve", "dt", "dh"), AVOIDANCE)
-def test_avoidance(
-    law: str, command: int, flags: str, time: float, reserve: float, dt: float, dh: float
-) -> None:
-    result = run(LAWS[law], COMMANDS[command], np.zeros(4))
-    assert result["flags"] == flags
-    assert result["time"] == pytest.approx(time, abs=dt)
-    assert result["reserve"] == pytest.approx(reserve, abs=dh)
 
 
 ESCAPE = [

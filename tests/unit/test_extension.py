@@ -20,6 +20,7 @@ class Transpose(nm.Law):
     """delta_dot = gain A^T hdot / mean momentum^2."""
     name: ClassVar[str] = "transpose"
     full_name: ClassVar[str] = "Jacobian transpose"
+    citation: ClassVar[str] = "this file"
     claims: ClassVar[frozenset] = frozenset(nm.Claim) - {nm.Claim.EXACT_TORQUE}
     gain: float = 1.0
     def step(self, array, obs, state):
@@ -41,9 +42,9 @@ def environment(tmp_path):
     return {**os.environ, "PYTHONPATH": path, "COLUMNS": "200"}
 
 
-def call(arguments, environment, cwd):
+def call(line, environment, cwd):
     done = subprocess.run(
-        [sys.executable, "-m", *arguments],
+        [sys.executable, "-m", *line.split()],
         env=environment,
         cwd=cwd,
         capture_output=True,
@@ -55,41 +56,18 @@ def call(arguments, environment, cwd):
 
 
 def test_a_law_from_an_entry_point_is_listed(environment, tmp_path):
-    found = json.loads(call(["nullmotion", "list", "laws", "--json"], environment, tmp_path))
+    found = json.loads(call("nullmotion list laws --json", environment, tmp_path))
     assert any(entry["name"] == "transpose" for entry in found)
 
 
 def test_a_law_from_an_entry_point_is_compared(environment, tmp_path):
-    out = call(
-        [
-            "nullmotion",
-            "compare",
-            "elliptic-singularity",
-            "--laws",
-            "transpose,sr",
-            "--out",
-            "result",
-        ],
-        environment,
-        tmp_path,
-    )
-    assert "transpose" in out
+    line = "nullmotion compare elliptic-singularity --laws transpose,sr --out result"
+    assert "transpose" in call(line, environment, tmp_path)
     assert "transpose" in (tmp_path / "result" / "compare.json").read_text()
 
 
 def test_a_law_from_an_entry_point_is_held_to_its_claims(environment):
-    out = call(
-        [
-            "pytest",
-            "-q",
-            "-p",
-            "no:cacheprovider",
-            "tests/contract/test_laws.py",
-            "-k",
-            "transpose",
-        ],
-        environment,
-        ROOT,
-    )
+    line = "pytest -q -p no:cacheprovider tests/contract/test_laws.py -k transpose"
+    out = call(line, environment, ROOT)
     assert " passed" in out
     assert " failed" not in out

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import nullmotion as nm
+from nullmotion import tree
+from nullmotion.compile import compile_function
 
 
 @pytest.mark.parametrize("name", ["pseudo-inverse", "sr", "dsea", "vcbsae"])
@@ -29,6 +31,25 @@ def test_reset_starts_the_state_anew(rng):
         prepared(rng.uniform(-1, 1, 4), rng.normal(size=3))
     prepared.reset()
     np.testing.assert_array_equal(prepared(np.full(4, 0.1), [1.0, 0.0, 0.0]), first)
+
+
+def test_a_call_runs_the_same_code_as_a_batch(rng):
+    """Arguments, carried state and flags in one buffer, against the kernel over batches."""
+    array, law = nm.layouts.pyramid(rate_limit=2.0), nm.laws.create("dsea")
+    state = law.init(array, np.zeros(4))
+
+    def step(delta, hdot, t, state):
+        rates, after = law.step(array, nm.Observation(delta, hdot, t, 0.01), state)
+        return array.limited(rates), after
+
+    batch = compile_function(step, np.zeros(4), np.zeros(3), 0.0, state, width=1)
+    prepared = nm.prepare(law, array)
+    carried = np.array(tree.flatten(state), float)[None]
+    for k in range(10):
+        delta, hdot, t = rng.uniform(-1, 1, 4), rng.normal(size=3), np.array([0.01 * k])
+        rates, after = batch(delta[None], hdot[None], t, carried)
+        np.testing.assert_array_equal(prepared(delta, hdot, t[0]), rates[0])
+        carried = np.concatenate([np.reshape(leaf, (1, -1)) for leaf in after], axis=1)
 
 
 def test_status_and_refusal():

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import nullmotion as nm
-from nullmotion import metrics
+from nullmotion import metrics, ops
 from nullmotion.errors import InputError, MemoryLimitError, TraceError, UnsupportedArrayError
 from nullmotion.sim import Setup, Stop, run, run_batch
 
@@ -150,6 +150,17 @@ class Constant(nm.Law):
 
     def step(self, array, obs, state):
         return self.rates, state
+
+
+@dataclass(frozen=True)
+class Failing(nm.Law):
+    """Rates that are no numbers from 0.1 s on."""
+
+    name: ClassVar[str] = "test-failing"
+
+    def step(self, array, obs, state):
+        late = ops.less(0.095, obs.t)
+        return np.array([ops.where(late, np.nan, 0.1)] * array.n), state
 
 
 @pytest.mark.parametrize("backend", BACKENDS)
@@ -295,6 +306,22 @@ def test_status_tells_angles_beyond_the_sine_range():
     s = setup(nm.laws.create("sr"), delta=np.array([1.1e5, 0.0, 0.0, 0.0]))
     assert run(s).status == ["angle-range"]
     assert run(setup(nm.laws.create("sr"))).status == []
+
+
+def test_a_failed_run_still_has_measures_and_a_summary():
+    s = setup(Failing(), steps=30, metrics=named("sigma_min"))
+    for backend in BACKENDS:
+        result = run(s, backend=backend)
+        assert result.status[-1] == "non-finite"
+        good = np.isfinite(result.delta).all(axis=1)
+        assert 0 < good.sum() < len(good)
+        for values in result.measures.values():
+            assert np.isfinite(values[good]).all() and np.isnan(values[~good]).all()
+        assert result.summary()["momentum_state"] == "unknown"
+
+
+def test_durations_are_written_as_meant():
+    assert run(setup(nm.laws.create("sr"), steps=330)).summary()["duration_s"] == 3.3
 
 
 def test_setup_refuses():

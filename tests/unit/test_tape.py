@@ -16,6 +16,7 @@ from nullmotion.compile import CompiledFunction, Program, Symbol, compile_functi
 from nullmotion.compile import tape as tp
 from nullmotion.compile.operations import OPERATIONS
 from nullmotion.compile.program import finish, interpret
+from nullmotion.compile.schedule import scheduled
 from nullmotion.compile.tape import Tape
 from nullmotion.errors import TraceError
 
@@ -132,6 +133,16 @@ def _bit(recipe: Recipe, op: str) -> None:
     recipe.put(op, whole, recipe.constant(float(recipe.rng.integers(0, 32))))
 
 
+def _raw_bit(recipe: Recipe, op: str) -> None:
+    place = recipe.constant(float(recipe.rng.integers(0, 64)))
+    recipe.put(op, recipe.tame(recipe.real(), -1e300, 1e300), place)
+
+
+def _flip(recipe: Recipe, op: str) -> None:
+    place = recipe.constant(float(recipe.rng.integers(0, 64)))
+    recipe.put(op, recipe.real(), recipe.tame(recipe.real(), -1e300, 1e300), place)
+
+
 DRAWS: dict[str, Callable[[Recipe, str], Any]] = {
     **dict.fromkeys(("add", "sub", "mul", "product", "div"), _binary),
     **dict.fromkeys(("neg", "fabs", "rint"), lambda r, op: r.put(op, r.real())),
@@ -146,6 +157,9 @@ DRAWS: dict[str, Callable[[Recipe, str], Any]] = {
     "significand": lambda r, op: r.put(op, r.tame(r.real(), -1e300, 1e300)),
     "power_of_two": lambda r, op: r.put(op, r.put("rint", r.tame(r.real(), -1022.0, 1023.0))),
     "bit": _bit,
+    "raw_bit": _raw_bit,
+    "flip": _flip,
+    "rsqrt_guess": lambda r, op: r.put(op, r.tame(r.real(), 1e-300, 1e300)),
     "constant": lambda r, op: r.constant(float(r.rng.choice(CONSTANTS))),
     "flag": lambda r, op: r.constant(bool(r.rng.integers(0, 2))),
 }
@@ -341,6 +355,39 @@ def test_operands_come_first() -> None:
                 assert all(a < i for a in node.args)
 
 
+@pytest.mark.parametrize("registers", [1, 8, 26])
+def test_scheduling_changes_the_order_alone(registers: int) -> None:
+    moved = 0
+    for seed in range(30):
+        recipe = Recipe(seed)
+        inputs, before = points(recipe.rng), recipe.program(fuse=True)
+        after = scheduled(before, registers)
+        assert all(a < i for i, node in enumerate(after.nodes) for a in node.args)
+        assert after.count() == before.count() and len(after.nodes) == len(before.nodes)
+        moved += [n.op for n in after.nodes] != [n.op for n in before.nodes]
+        found, truth = interpret(after, inputs), interpret(before, inputs)
+        assert all(same_bits(a, b) for a, b in zip(found, truth, strict=True))
+    assert moved > 20
+
+
+def test_scheduling_starts_long_chains_early() -> None:
+    def source(x: Any, y: Any) -> Any:
+        return x + y, x - y, ops.sqrt(ops.sqrt(x))
+
+    order = [n.op for n in scheduled(traced(source, 2)).nodes if n.op != "input"]
+    assert order[0] == "sqrt"
+
+
+def test_scheduling_keeps_guards() -> None:
+    def source(x: Any) -> Any:
+        tp.guard("positive", x > 0.0)
+        return x * x, 3.0
+
+    program = scheduled(traced(source, 1))
+    assert program.nodes[program.guards["positive"]].op == "less"
+    assert program.nodes[program.outputs[1]].value == 3.0
+
+
 def test_multiply_adds_fuse() -> None:
     def dot(a: Any, b: Any, c: Any, d: Any, e: Any, f: Any) -> Any:
         return np.array([a, b, c]) @ np.array([d, e, f])
@@ -427,6 +474,13 @@ def test_equality_is_recorded() -> None:
     assert np.array_equal(same, [1, 2, 2, 1]) and np.array_equal(different, [1, 2, 1, 1])
 
 
+def test_symbols_equal_other_things_as_objects_do() -> None:
+    x = Tape().input("x")
+    assert (x == "x") is False and (x != "x") is True
+    assert isinstance(x == x, Symbol) and isinstance(x == 2.0, Symbol)
+    assert {x: 1}[x] == 1  # by identity
+
+
 @pytest.mark.parametrize("known", [True, False, np.True_, np.False_])
 def test_booleans_are_chosen_by_what_is_known(known: bool) -> None:
     def source(x: Any, y: Any) -> Any:
@@ -488,6 +542,7 @@ def test_shared_operations_on_floats_arrays_and_symbols() -> None:
             ops.amin(np.array([a, b, 0.5 * a])),
             ops.power(ops.absolute(a), 3.0),
             ops.power(ops.absolute(b), 0.5),
+            ops.copysign(a, ops.where(ops.equal(b, b), b, 1.0)),  # a NaN's sign is not ours
         )
 
     rng = np.random.default_rng(1)

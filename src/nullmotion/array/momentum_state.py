@@ -83,6 +83,8 @@ def _angles(vectors: Any, e: Any) -> Any:
 
 def describe(sse_value: float, epsilon: float = 0.2, epsilon1: float = 0.8) -> str:
     """Return the state of the momentum in words (Mao 2019, Eq 29)."""
+    if np.isnan(sse_value):
+        return "unknown"
     if sse_value < epsilon:
         return "exhausted"
     return "sufficient" if sse_value > epsilon1 else "in the middle"

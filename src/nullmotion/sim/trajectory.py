@@ -89,7 +89,8 @@ class Trajectory:
     @cached_property
     def eram(self) -> np.ndarray:
         """Effective residual angular momentum of each CMG (Mao 2019, Eq 28), (N+1, n)."""
-        return np.asarray(momentum_state.eram(self.setup.true_array, self.delta, self.hdot))
+        found = momentum_state.eram(self.setup.true_array, self.delta, self.hdot)
+        return np.where(np.isfinite(self.delta).all(axis=1, keepdims=True), found, np.nan)
 
     @cached_property
     def desaturation_due_at_s(self) -> float | None:
