@@ -14,7 +14,7 @@ from common import LAWS, Row, median_time
 
 import nullmotion as nm
 from nullmotion.compile import llvm
-from nullmotion.compile.loop import LoopKernel
+from nullmotion.compile.kernel import LoopKernel
 from nullmotion.sim import Setup
 from nullmotion.sim.stages import loop
 

@@ -132,6 +132,9 @@ def hard_points(name: str, count: int, draw: random.Random) -> list[tuple[float,
     if name == "acos":
         near = [draw.choice(signs) * (1.0 - abs(log_uniform(-53, -1))) for _ in range(count)]
         return [(x,) for x in near] + [(draw.uniform(-1.0, 1.0),) for _ in near]
+    if name == "rsqrt":
+        near = [draw.uniform(1.0, 4.0) for _ in range(count)]
+        return [(x,) for x in near] + [(abs(log_uniform(-1022, 1023)),) for _ in near]
     near = [(log_uniform(-1, 0), log_uniform(0, 1)) for _ in range(count)]
     return near + [(log_uniform(-1074, 1023), log_uniform(-1074, 1023)) for _ in near]
 
@@ -145,18 +148,28 @@ def ulps(exact: mp.mpf, value: float) -> float:
 def measure(count: int) -> None:
     """Print operation counts and the worst error found of each compiled function."""
     from nullmotion.compile import compile_function, elementary
+    from nullmotion.compile.tape import rsqrt_guess
 
     draw = random.Random(1)
-    for name in ("sin", "cos", "exp", "log", "acos", "atan2"):
+    for name in ("sin", "cos", "exp", "log", "acos", "rsqrt", "atan2"):
         points = hard_points(name, count, draw)
         compiled = compile_function(getattr(elementary, name), *points[0])
         values = compiled(*np.array(points).T)
-        exact = (getattr(mp, name)(*p) for p in points)
+        exact = (getattr(mp, name)(*p) if name != "rsqrt" else 1 / mp.sqrt(*p) for p in points)
         errors = [ulps(e, v) for e, v in zip(exact, values.tolist(), strict=True)]
         worst, where = max(zip(errors, points, strict=True))
         print(f"{name:6s} {compiled.program.operations} operations, {worst:.3f} ulp at {where}")
     both = compile_function(lambda x: (elementary.sin(x), elementary.cos(x)), 1.0)
     print(f"sin and cos together {both.program.operations} operations")
+    x = np.linspace(1.0, 4.0, 100_001)
+    guess = rsqrt_guess(x) * np.sqrt(x) - 1.0
+    rough = compile_function(lambda v: elementary.rsqrt(v, rough=True), 1.0)(x) * np.sqrt(x) - 1.0
+    print(f"rsqrt: guess within {abs(guess).max():.4f}, rough within {abs(rough).max():.1e}")
+
+
+def binomial(count: int) -> list[float]:
+    """Return coefficients of e, e**2, ... in (1 - e)**(-1/2): the step from a guess of a root."""
+    return [float(mp.binomial(2 * k, k) / 4**k) for k in range(1, count + 1)]
 
 
 def main() -> None:
@@ -171,6 +184,7 @@ def main() -> None:
     for name, (coefficients, error) in fits():
         print(f"{name} = (  # relative error of the function {error:.1e}")
         print("".join(f"    {c!r},\n" for c in coefficients) + ")")
+    print(f"_RSQRT = {tuple(binomial(4))}")
     closest = min((abs(float(k * mp.pi / 2) - k * mp.pi / 2), k) for k in range(1, 63662))
     print(f"nearest double to a multiple of pi/2: {float(closest[0]):.2e} from {closest[1]} pi/2")
     measure(int(sys.argv[1]) if len(sys.argv) > 1 else 20000)

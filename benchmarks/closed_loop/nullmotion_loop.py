@@ -14,7 +14,8 @@ import workload as w
 
 from nullmotion import linalg, ops
 from nullmotion.array.model import CmgArray
-from nullmotion.compile.loop import Loop, LoopKernel, Stage
+from nullmotion.compile.kernel import LoopKernel
+from nullmotion.compile.loop import Loop, Stage
 from nullmotion.compile.tape import unguarded
 
 

@@ -11,7 +11,7 @@ from nullmotion import ops
 
 Matrix = Any
 
-_SWEEPS = {1: 0, 2: 2, 3: 4}  # one-sided Jacobi on m x m: to the last bit (design/svd_sweeps.py)
+_SWEEPS = {1: 0, 2: 1, 3: 4}  # one-sided Jacobi on m rows, to the last bit: design/svd_sweeps.py
 _ORTHOGONAL = 1e-28  # squared cosine of two rows below which their product is rounding
 _TINY = 1e-150  # its square is still a normal number
 _RANK = 4e-16  # a second singular value below this share of the first is rounding

@@ -11,7 +11,8 @@ import pytest
 
 from nullmotion import ops
 from nullmotion.compile import carry
-from nullmotion.compile.loop import Loop, LoopKernel, Stage, run_on_host
+from nullmotion.compile.kernel import LoopKernel
+from nullmotion.compile.loop import Loop, Stage, run_on_host
 from nullmotion.compile.tape import Symbol, Tape
 
 STEPS = 60

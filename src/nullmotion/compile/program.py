@@ -11,7 +11,8 @@ import numpy as np
 
 from nullmotion import tree
 from nullmotion.compile.operations import OPERATIONS
-from nullmotion.compile.tape import Node, Symbol, Tape, tracing
+from nullmotion.compile.places import tracing
+from nullmotion.compile.tape import Node, Symbol, Tape
 
 
 @dataclass(frozen=True)

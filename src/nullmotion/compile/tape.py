@@ -7,22 +7,17 @@ as they appear, and `Tape.program` drops what no output needs.
 
 from __future__ import annotations
 
-import math
-import os
-import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from pathlib import Path
-from types import FrameType
 from typing import Any
 
 import numpy as np
 
-from nullmotion.compile.operations import OPERATIONS
+from nullmotion.compile.folding import RULES
+from nullmotion.compile.operations import OPERATIONS, Kind
+from nullmotion.compile.places import user_frame
 from nullmotion.errors import TraceError
-
-_PACKAGE = str(Path(__file__).resolve().parent.parent)
 
 
 @dataclass(frozen=True)
@@ -71,6 +66,8 @@ class Tape:
 
     def record(self, op: str, *args: int) -> int:
         """Return the node of ``op(args)``, recorded once and simplified."""
+        operands = OPERATIONS[op].operands
+        args = tuple(self._as(kind, a) for kind, a in zip(operands, args, strict=True))
         folded = self._fold(op, args)
         if folded is not None:
             return folded
@@ -82,13 +79,21 @@ class Tape:
             self._index[key] = len(self.nodes) - 1
         return self._index[key]
 
+    def _as(self, kind: Kind, node: int) -> int:
+        """Return a node of the kind that an operation takes: a truth counts as 1 or 0."""
+        if self.nodes[node].kind == kind:
+            return node
+        if kind == "real":
+            return self.record("select", node, self.constant(1.0), self.constant(0.0))
+        raise TraceError("this line takes a number for a condition; compare it", *_user_frame())
+
     def _fold(self, op: str, args: tuple[int, ...]) -> int | None:
         nodes = [self.nodes[i] for i in args]
         if all(n.op == "constant" for n in nodes):
             with np.errstate(all="ignore"):
                 value: Any = OPERATIONS[op].evaluate(*[n.value for n in nodes])
             return self.constant(np.asarray(value).item())
-        rule = _RULES.get(op)
+        rule = RULES.get(op)
         known = [n.value if n.op == "constant" else None for n in nodes]
         return rule(self, args, known) if rule else None
 
@@ -97,124 +102,6 @@ class Tape:
         known = self.guards.setdefault(flag, [])
         if condition not in known:
             known.append(condition)
-
-
-def _negated(tape: Tape, i: int) -> int | None:
-    node = tape.nodes[i]
-    return node.args[0] if node.op == "neg" else None
-
-
-def _add(t: Tape, a: tuple[int, ...], c: Sequence[Any]) -> int | None:
-    if c[0] == 0.0:
-        return a[1]
-    if c[1] == 0.0:
-        return a[0]
-    if (n := _negated(t, a[1])) is not None:
-        return t.record("sub", a[0], n)
-    if (n := _negated(t, a[0])) is not None:
-        return t.record("sub", a[1], n)
-    return None
-
-
-def _sub(t: Tape, a: tuple[int, ...], c: Sequence[Any]) -> int | None:
-    if c[1] == 0.0:
-        return a[0]
-    if c[0] == 0.0:
-        return t.record("neg", a[1])
-    if a[0] == a[1]:
-        return t.constant(0.0)
-    if (n := _negated(t, a[1])) is not None:
-        return t.record("add", a[0], n)
-    return None
-
-
-def _mul(t: Tape, a: tuple[int, ...], c: Sequence[Any]) -> int | None:
-    for value, other in ((c[0], a[1]), (c[1], a[0])):
-        if value == 0.0:
-            return t.constant(0.0)
-        if value == 1.0:
-            return other
-        if value == -1.0:
-            return t.record("neg", other)
-    for i, other in ((a[0], a[1]), (a[1], a[0])):
-        if (n := _negated(t, i)) is not None:
-            return t.record("neg", t.record("mul", n, other))
-    return None
-
-
-def _div(t: Tape, a: tuple[int, ...], c: Sequence[Any]) -> int | None:
-    if c[1] is None or c[1] == 0.0:
-        return None
-    if math.isinf(c[1]):
-        return t.constant(0.0)
-    exact = abs(math.frexp(c[1])[0]) == 0.5 and abs(math.frexp(c[1])[1]) < 1000
-    return t.record("mul", a[0], t.constant(1.0 / c[1])) if exact else None
-
-
-def _neg(t: Tape, a: tuple[int, ...], c: Sequence[Any]) -> int | None:
-    return _negated(t, a[0])
-
-
-def _select(t: Tape, a: tuple[int, ...], c: Sequence[Any]) -> int | None:
-    if c[0] is not None:
-        return a[1] if c[0] else a[2]
-    return a[1] if a[1] == a[2] else None
-
-
-def _logic(keep: bool) -> Callable[[Tape, tuple[int, ...], Sequence[Any]], int | None]:
-    def rule(t: Tape, a: tuple[int, ...], c: Sequence[Any]) -> int | None:
-        for value, other in ((c[0], a[1]), (c[1], a[0])):
-            if value is not None:
-                return other if bool(value) is keep else t.constant(not keep)
-        return a[0] if a[0] == a[1] else None
-
-    return rule
-
-
-# x*0, x-x and x/inf -> 0 drop a NaN or infinity in x, x+0 -> x and 0-x -> -x the sign of a zero;
-# the zeros of the axes make it worth it
-_RULES: dict[str, Callable[[Tape, tuple[int, ...], Sequence[Any]], int | None]] = {
-    "add": _add,
-    "sub": _sub,
-    "mul": _mul,
-    "div": _div,
-    "neg": _neg,
-    "select": _select,
-    "and": _logic(True),
-    "or": _logic(False),
-}
-
-
-def _machinery(file: str) -> bool:
-    """Return whether a source file belongs to tracing itself rather than to what is traced."""
-    inside = file.startswith((str(Path(_PACKAGE) / "compile"), str(Path(_PACKAGE) / "ops.py")))
-    return inside or f"{os.sep}numpy{os.sep}" in file
-
-
-def _user_frame() -> tuple[str, int]:
-    """Return file and line of the innermost running frame outside the tracing machinery."""
-    frame: FrameType | None = sys._getframe(1)
-    while frame is not None:
-        if not _machinery(frame.f_code.co_filename):
-            return frame.f_code.co_filename, frame.f_lineno
-        frame = frame.f_back
-    return "", 0
-
-
-@contextmanager
-def tracing() -> Iterator[None]:
-    """Turn the errors of routines that cannot take symbols into a `TraceError` with its place."""
-    try:
-        yield
-    except (TypeError, AttributeError, ValueError, IndexError) as error:
-        place, frame = ("", 0), error.__traceback__
-        while frame is not None:
-            if not _machinery(frame.tb_frame.f_code.co_filename):
-                place = (frame.tb_frame.f_code.co_filename, frame.tb_lineno)
-            frame = frame.tb_next
-        raise TraceError(
-            f"this line does not work on symbols ({type(error).__name__}: {error})", *place
-        ) from error
 
 
 class Symbol:
@@ -321,7 +208,7 @@ class Symbol:
         return self._apply("not")
 
     def __bool__(self) -> bool:
-        file, line = _user_frame()
+        file, line = user_frame()
         raise TraceError(
             "this line decides by a value that is not known while the source is traced; "
             "use nullmotion.ops.where, minimum, maximum, clip or sign "
@@ -334,7 +221,7 @@ class Symbol:
         node = self.tape.nodes[self.node]
         if node.op == "constant":
             return float(node.value)  # type: ignore[arg-type]
-        file, line = _user_frame()
+        file, line = user_frame()
         raise TraceError(
             "this line needs the number behind a value that is still a symbol", file, line
         )
@@ -433,9 +320,13 @@ def equal(a: Any, b: Any) -> Any:
 
 def select(condition: Any, a: Any, b: Any) -> Any:
     """Return a where the condition holds, else b (reals or booleans)."""
-    if getattr(a, "kind", None) == "bool" or getattr(b, "kind", None) == "bool":
+    if _is_boolean(a) and _is_boolean(b):
         return apply("or", apply("and", condition, a), apply("and", apply("not", condition), b))
     return apply("select", condition, a, b)
+
+
+def _is_boolean(value: Any) -> bool:
+    return isinstance(value, (bool, np.bool_)) or getattr(value, "kind", None) == "bool"
 
 
 def minimum(a: Any, b: Any) -> Any:

@@ -13,7 +13,7 @@ import numpy as np
 
 from nullmotion import tree
 from nullmotion.compile import llvm
-from nullmotion.compile.loop import LoopKernel
+from nullmotion.compile.kernel import LoopKernel
 from nullmotion.errors import InputError
 from nullmotion.sim.run import Progress, Record, _columns, check_history, run, schedule, totals
 from nullmotion.sim.setup import Setup

@@ -10,7 +10,8 @@ import numpy as np
 
 from nullmotion import tree
 from nullmotion.compile import llvm
-from nullmotion.compile.loop import Loop, LoopKernel, run_on_host
+from nullmotion.compile.kernel import LoopKernel
+from nullmotion.compile.loop import Loop, run_on_host
 from nullmotion.errors import InputError, MemoryLimitError, TraceError
 from nullmotion.sim.setup import Setup
 from nullmotion.sim.stages import Outcome, Record, loop, reductions
