@@ -12,6 +12,9 @@ from nullmotion.papers.mao2019 import FIGURES, FLAGS, PRINTED, PRINTED_ESCAPE, M
 LAWS = ("gsr", "odsr1", "odsr2")
 
 
+pytestmark = pytest.mark.slow
+
+
 @pytest.fixture(scope="module")
 def trajectories():
     return Mao2019().trajectories()
@@ -100,7 +103,8 @@ def test_statuses_are_honest(cells):
     assert differing <= {(t, law, "momentum_reserve_Nms") for t in "45" for law in ("pi", "nd")}
 
 
-def test_tables_are_written_whole(tmp_path):
+def test_tables_are_written_whole(tmp_path, trajectories, monkeypatch):
+    monkeypatch.setattr(Mao2019, "trajectories", lambda self, progress: trajectories)
     result = Mao2019().run(tmp_path, figures=False)
     rows = json.loads((tmp_path / "tables.json").read_text())
     assert len(rows) == len(result.cells)

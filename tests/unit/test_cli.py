@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from nullmotion.cli import app, guard
+from nullmotion.cli import app, guard, screen
 
 SHORT = ["--set", "simulation.duration_s=0.5"]
 
@@ -195,6 +195,25 @@ def test_a_law_file_flies_and_repeats(cli, tmp_path, law_file):
     status, out, _ = cli("rerun", "r")
     assert status == 0
     assert "identical" in out
+
+
+def test_a_failed_run_is_stored_with_a_page_that_says_so(cli, tmp_path, law_file):
+    text = law_file.read_text().replace("obs.hdot, state", "(obs.hdot / (obs.t < 0.195)), state")
+    assert text.count("obs.t") == 1
+    law_file.write_text(text)
+    status, out, err = cli("run", "profile", *SHORT, "--law-file", "my.py", "--out", "r")
+    assert (status, err) == (0, "")
+    assert "non-finite" in out
+    page = (tmp_path / "r" / "report.html").read_text()
+    assert "Failed: not a number from" in page
+    summary = json.loads((tmp_path / "r" / "summary.json").read_text())
+    assert "non-finite" in summary["status"] and summary["momentum_state"] == "unknown"
+
+
+def test_vectors_are_shown_without_rounding_noise():
+    assert screen.vector([1.155, 0.0, -5.294e-17]) == "1.155 0 0"
+    assert screen.vector([-1e-20, 2e-20]) == "-1e-20 2e-20"
+    assert screen.vector([float("nan"), 1.0]) == "nan 1"
 
 
 @pytest.mark.parametrize("kind", ["laws", "layouts", "metrics", "papers", "scenarios"])

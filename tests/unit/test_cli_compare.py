@@ -30,6 +30,7 @@ def short(name, **values):
     return load_scenario(name, {"simulation.duration_s": 0.3, **values})
 
 
+@pytest.mark.slow
 def test_cases_say_what_they_run_on():
     comparison = compare(short("elliptic-singularity"))
     kinds = {case.label: case.parameters_kind for case in comparison.cases}
@@ -49,6 +50,7 @@ def test_a_law_that_cannot_steer_the_array_is_a_row():
     assert json.loads(comparison.to_json())["cases"][1]["ran"] is False
 
 
+@pytest.mark.slow
 def test_varied_cases_equal_their_single_runs():
     comparison = compare(short("elliptic-singularity"), ["gsr"], parse("array.skew_deg=40:60:10"))
     assert comparison.values == (40.0, 50.0, 60.0)
@@ -111,6 +113,7 @@ def test_a_law_file_is_compared_beside_the_rest(cli, tmp_path):
     assert "half-for-test" in out
 
 
+@pytest.mark.slow
 def test_demo_shows_and_writes(cli, tmp_path):
     status, out, err = cli("demo")
     assert (status, err) == (0, "")

@@ -60,12 +60,14 @@ def test_a_law_from_an_entry_point_is_listed(environment, tmp_path):
     assert any(entry["name"] == "transpose" for entry in found)
 
 
+@pytest.mark.slow
 def test_a_law_from_an_entry_point_is_compared(environment, tmp_path):
     line = "nullmotion compare elliptic-singularity --laws transpose,sr --out result"
     assert "transpose" in call(line, environment, tmp_path)
     assert "transpose" in (tmp_path / "result" / "compare.json").read_text()
 
 
+@pytest.mark.slow
 def test_a_law_from_an_entry_point_is_held_to_its_claims(environment):
     line = "pytest -q -p no:cacheprovider tests/contract/test_laws.py -k transpose"
     out = call(line, environment, ROOT)

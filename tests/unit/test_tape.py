@@ -192,7 +192,9 @@ def test_every_operation_is_drawn() -> None:
     assert used == set(OPERATIONS)
 
 
-@pytest.mark.parametrize("block", range(20))
+@pytest.mark.parametrize(
+    "block", [*range(4), *(pytest.param(b, marks=pytest.mark.slow) for b in range(4, 20))]
+)
 def test_random_programs_agree_with_numpy_bit_for_bit(block: int) -> None:
     for seed in range(25 * block, 25 * block + 25):
         recipe = Recipe(seed)
@@ -443,9 +445,15 @@ def converting(x: Any) -> Any:
     return float(x)  # the number
 
 
+def doubting(x: Any) -> Any:
+    """Take a number for a condition."""
+    return ops.where(x, 1.0, 2.0)  # the condition
+
+
 @pytest.mark.parametrize(
     ("source", "marker", "advice"),
     [
+        (doubting, "the condition", "compare it"),
         (branching, "the branch", "nullmotion.ops.where"),
         (comparing, "the maximum", "maximum"),
         (equating, "the equality", "where"),
@@ -492,6 +500,23 @@ def test_booleans_are_chosen_by_what_is_known(known: bool) -> None:
     chosen, either = compile_function(source, 1.0, 1.0)(x, y)
     assert np.array_equal(chosen, np.where(known, x, y) < 0)
     assert np.array_equal(either, np.where(x < 0, y < 0, known))
+
+
+def test_truths_count_as_one_and_zero() -> None:
+    def source(x: Any, y: Any) -> Any:
+        positive = x > 0.0
+        return (
+            y * positive,
+            positive + y,
+            1.0 - (x > y) * True,
+            ops.where(positive, y > 0.0, 0.5) + 0.0,
+            ops.where(ops.where(positive, True, False), x, y),
+        )
+
+    x, y = np.array([-1.0, 2.0, 3.0]), np.array([2.0, -3.0, 4.0])
+    truth = [y * (x > 0), (x > 0) + y, 1.0 - (x > y), [0.5, 0, 1], np.where(x > 0, x, y)]
+    for found, expected in zip(compile_function(source, 1.0, 1.0)(x, y), truth, strict=True):
+        np.testing.assert_array_equal(found, expected)
 
 
 def test_guards_are_reported_run_by_run() -> None:

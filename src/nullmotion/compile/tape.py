@@ -85,7 +85,7 @@ class Tape:
             return node
         if kind == "real":
             return self.record("select", node, self.constant(1.0), self.constant(0.0))
-        raise TraceError("this line takes a number for a condition; compare it", *_user_frame())
+        raise TraceError("this line takes a number for a condition; compare it", *user_frame())
 
     def _fold(self, op: str, args: tuple[int, ...]) -> int | None:
         nodes = [self.nodes[i] for i in args]
