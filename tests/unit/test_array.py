@@ -197,3 +197,13 @@ def test_a_failure_keeps_the_torque_space() -> None:
     left = nm.layouts.box90().without([2, 3])
     assert left.m == 3 and left.n == 2
     assert nm.layouts.planar().without(0, frozen_at=1.0).momentum(np.zeros(3)).shape == (2,)
+
+
+@pytest.mark.parametrize("mode", ["scale", "clip"])
+def test_rates_of_many_states_are_limited_one_by_one(mode, rng):
+    array = nm.layouts.pyramid(rate_limit=[0.5, 1.0, 1.5, 2.0], rate_limit_mode=mode)
+    rates = rng.normal(size=(2, 5, 4))
+    found = array.limited(rates)
+    one_by_one = [[array.limited(row) for row in block] for block in rates]
+    np.testing.assert_array_equal(found, one_by_one)
+    assert (np.abs(found) <= array.rate_limit * (1 + 1e-15)).all()

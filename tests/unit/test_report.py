@@ -364,3 +364,12 @@ def test_pages_need_no_heavy_import():
     code = f"import sys, nullmotion.report; print([m for m in {heavy} if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_every_kind_of_parameters_has_its_words():
+    from nullmotion.campaign.cases import parameters_kind
+    from nullmotion.report.results import KINDS
+    from nullmotion.scenario.schema import CaseSection
+
+    for given in ({}, {"as_published": True}, {"xi": 8.0}, {"as_published": True, "xi": 8.0}):
+        assert parameters_kind(CaseSection(name="vcbsae", **given)) in KINDS
