@@ -76,6 +76,7 @@ def test_vary_reads_ranges_and_lists():
             parse(bad)
 
 
+@pytest.mark.slow
 def test_compare_writes_its_files(cli, tmp_path):
     setting = ["--set", "simulation.duration_s=0.3"]
     status, out, err = cli(
