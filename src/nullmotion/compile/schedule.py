@@ -14,7 +14,7 @@ _LATENCY = {
     "equal": 3, "constant": 0, "input": 0,
 }  # fmt: skip
 _PASSIVE = ("constant", "input")
-_REGISTERS = 26  # of 32; some hold constants
+_REGISTERS = 24  # of 32; the rest holds constants and what is about to be used
 _CANDIDATES = 24  # of the operations that are ready, when registers are short
 
 
