@@ -7,6 +7,7 @@ through the entry point group of the same name, and `load_file` adds a user's.
 
 from __future__ import annotations
 
+import dataclasses
 import importlib
 import importlib.util
 import inspect
@@ -115,3 +116,21 @@ class Registry:
         if name not in self._entries:
             raise UnknownNameError(self.kind, name, self.names())
         return self._entries[name]
+
+    def create(self, name: str, **parameters: Any) -> Any:
+        """Return an entry made with parameters; the rest keep their defaults.
+
+        Raises:
+            UnknownNameError: For an unknown entry or parameter, with the nearest names.
+            InputError: For a parameter value that the entry refuses.
+        """
+        cls = self.get(name)
+        known = {f.name for f in dataclasses.fields(cls)}
+        for key in parameters:
+            label = f"{self.kind}.{key}"
+            if key not in known and known:
+                raise UnknownNameError(label, key, known)
+            if not known:
+                allowed = f"no parameters: {self.kind} {name!r} has none"
+                raise InputError(label, parameters[key], allowed)
+        return cls(**parameters)

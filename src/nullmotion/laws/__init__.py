@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import dataclasses
 from typing import Any
 
-from nullmotion.errors import InputError, UnknownNameError
 from nullmotion.law import Law
 from nullmotion.registry import Registry
 
@@ -26,11 +24,5 @@ def create(name: str, **parameters: Any) -> Law:
         UnknownNameError: For an unknown law or parameter, with the nearest names.
         InputError: For a parameter value that the law refuses.
     """
-    cls = get(name)
-    known = {f.name for f in dataclasses.fields(cls)}
-    for key in parameters:
-        if key not in known and known:
-            raise UnknownNameError(f"law.{key}", key, known)
-        if not known:
-            raise InputError(f"law.{key}", parameters[key], f"no parameters: law {name!r} has none")
-    return cls(**parameters)
+    made: Law = registry.create(name, **parameters)
+    return made

@@ -11,8 +11,18 @@ from nullmotion.array.model import CmgArray
 from nullmotion.errors import InputError, UnsupportedArrayError
 from nullmotion.law import Law
 from nullmotion.metrics.base import Metric
+from nullmotion.spacecraft import (
+    Controller,
+    Desaturation,
+    Disturbance,
+    Event,
+    Sensors,
+    Servo,
+    Spacecraft,
+)
+from nullmotion.spacecraft.body import checked_quaternion
 
-Integrator = Literal["euler", "rk4", "semi-implicit-euler"]
+Integrator = Literal["euler", "rk4", "semi-implicit-euler", "dop853"]
 
 
 @dataclass(frozen=True)
@@ -32,7 +42,10 @@ class Stop:
 
 @dataclass(frozen=True)
 class Setup:
-    """One momentum-rate run.
+    """One run: what is asked, of which array, by which law, on which plant.
+
+    What is asked is a rate of momentum (`hdot`), a momentum (`momentum_target`) or, with
+    a `spacecraft`, an attitude (`target` or `reference`).
 
     Args:
         array: The array that the law is given.
@@ -46,9 +59,22 @@ class Setup:
         steps: Number of steps.
         period_steps: Steps between two samples of the law.
         delay_steps: Steps between a sample and the rates that come of it.
-        integrator: ``euler``, ``rk4`` or ``semi-implicit-euler``; serves the plant.
+        integrator: ``euler``, ``rk4``, ``semi-implicit-euler``, or ``dop853`` (SciPy's adaptive
+            one, uncompiled, for cross-checks); serves the plant.
         stop: Conditions that end the run early.
         metrics: What is measured on the way.
+        momentum_target: Momentum to go to [N m s], (m,): hdot = (target - h) / period.
+        spacecraft: Body that carries the array; needs `controller` and an array that
+            gives torque in all of B.
+        controller: Makes hdot of the attitude error.
+        target: Attitude to go to, q_RN, (4,).
+        reference: Attitude to follow, a row for each law period: q_RN, omega_RN_R
+            [rad/s], alpha_RN_R [rad/s^2], (rows, 10); the last row holds on, at rest.
+        servo: How gimbals follow; at once and exactly if None.
+        sensors: Errors of measured rate and attitude.
+        disturbance: Torque on the body from outside.
+        desaturation: Torque from outside that takes momentum off the array.
+        events: Faults.
 
     Raises:
         UnsupportedArrayError: When the law cannot steer the array.
@@ -68,6 +94,16 @@ class Setup:
     integrator: Integrator = "rk4"
     stop: tuple[Stop, ...] = ()
     metrics: tuple[Metric, ...] = field(default=())
+    momentum_target: np.ndarray | None = None
+    spacecraft: Spacecraft | None = None
+    controller: Controller | None = None
+    target: np.ndarray | None = None
+    reference: np.ndarray | None = None
+    servo: Servo | None = None
+    sensors: Sensors | None = None
+    disturbance: Disturbance | None = None
+    desaturation: Desaturation | None = None
+    events: tuple[Event, ...] = ()
 
     def __post_init__(self) -> None:
         """Check lengths and signs."""
@@ -87,6 +123,30 @@ class Setup:
         for key, least in (("steps", 1), ("period_steps", 1), ("delay_steps", 0)):
             if int(getattr(self, key)) < least:
                 raise InputError(key, getattr(self, key), f"a whole number from {least}")
+        if self.momentum_target is not None:
+            wanted = _finite("momentum_target", self.momentum_target, (self.array.m,))
+            put(self, "momentum_target", wanted)
+        for event in self.events:
+            if not 0 <= event.cmg < self.array.n:
+                raise InputError("event.cmg", event.cmg, f"from 0 to {self.array.n - 1}")
+        if self.spacecraft is not None:
+            self._check_attitude()
+
+    def _check_attitude(self) -> None:
+        if self.array.m != 3:
+            raise InputError(
+                "array", self.array.label, "an array with torque in all three dimensions"
+            )
+        if self.controller is None:
+            raise InputError("controller", None, "a controller for the spacecraft")
+        if (self.target is None) == (self.reference is None):
+            raise InputError("target", self.target, "either a target or a reference")
+        put = object.__setattr__
+        if self.target is not None:
+            put(self, "target", checked_quaternion("target", self.target))
+        else:
+            table = np.asarray(self.reference, float)
+            put(self, "reference", _finite("reference", table, (len(table), 10)))
 
     @property
     def true_array(self) -> CmgArray:
@@ -96,7 +156,14 @@ class Setup:
     @property
     def scheduled(self) -> bool:
         """Whether the command changes over time."""
-        return self.hdot.ndim == 2
+        return self.reference is not None or self.hdot.ndim == 2
+
+    @property
+    def table(self) -> np.ndarray:
+        """The command for each law period, one row each; empty rows when it is constant."""
+        if self.reference is not None:
+            return self.reference
+        return self.hdot if self.hdot.ndim == 2 else np.zeros((1, 0))
 
     @property
     def period(self) -> float:

@@ -1,0 +1,22 @@
+"""The spacecraft around an array: body, servo, sensors, torques from outside, faults."""
+
+from __future__ import annotations
+
+from nullmotion.spacecraft.body import Spacecraft
+from nullmotion.spacecraft.controller import AttitudeObservation, Controller
+from nullmotion.spacecraft.disturbance import Desaturation, Disturbance, Orbit
+from nullmotion.spacecraft.events import Event
+from nullmotion.spacecraft.sensors import Sensors
+from nullmotion.spacecraft.servo import Servo
+
+__all__ = [
+    "AttitudeObservation",
+    "Controller",
+    "Desaturation",
+    "Disturbance",
+    "Event",
+    "Orbit",
+    "Sensors",
+    "Servo",
+    "Spacecraft",
+]

@@ -1,0 +1,77 @@
+"""What an attitude controller is and what it sees."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+from nullmotion import ops, rotation
+
+
+@dataclass(frozen=True)
+class AttitudeObservation:
+    """What a controller sees at a sample, as floats or symbols.
+
+    Attributes:
+        q_BN: Measured attitude, (4,).
+        omega_BN_B: Measured body rate in B [rad/s], (3,).
+        q_RN: Reference attitude now, (4,): the target, or a point of a profile.
+        omega_RN_R: Rate of the reference in its own frame R [rad/s], (3,); zero at a target.
+        alpha_RN_R: Its derivative [rad/s^2], (3,).
+        inertia: Inertia as the controller knows it [kg m^2], (3, 3).
+        momentum: Momentum of the array as measured, in B [N m s], (3,).
+        t: Time [s].
+        period: Time to the next sample [s].
+    """
+
+    q_BN: Any
+    omega_BN_B: Any
+    q_RN: Any
+    omega_RN_R: Any
+    alpha_RN_R: Any
+    inertia: Any
+    momentum: Any
+    t: Any
+    period: Any
+
+    @cached_property
+    def q_BR(self) -> Any:
+        """Attitude error q_RN^-1 * q_BN with a scalar part that is not negative, (4,).
+
+        Of q and -q, which are the same attitude, the nearer to the identity: a
+        controller on it never unwinds.
+        """
+        error = rotation.multiply(rotation.conjugate(self.q_RN), self.q_BN)
+        return error * ops.where(ops.less(error[0], 0.0), -1.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Controller:
+    """Base of attitude controllers: from an observation to a torque on the vehicle.
+
+    A controller is one file under ``spacecraft/controllers/`` with one frozen dataclass;
+    its fields are the parameters. It never branches on values (`nullmotion.ops`). The
+    array is then commanded with hdot = -torque - omega x h.
+
+    Class attributes:
+        name: Name on the command line and in files.
+        full_name: Name in the field.
+        aliases: Other names.
+        citation: Where it comes from.
+        follows_profile: Whether it uses the reference's rate and acceleration.
+    """
+
+    name: ClassVar[str] = ""
+    full_name: ClassVar[str] = ""
+    aliases: ClassVar[tuple[str, ...]] = ()
+    citation: ClassVar[str] = ""
+    follows_profile: ClassVar[bool] = False
+
+    def init(self) -> Any:
+        """Return the controller's state before its first sample."""
+        return ()
+
+    def step(self, obs: AttitudeObservation, state: Any) -> tuple[Any, Any]:
+        """Return the torque wanted on the vehicle in B [N m], (3,), and the next state."""
+        raise NotImplementedError
