@@ -169,6 +169,13 @@ def rsqrt(x: Value, rough: bool = False) -> Value:
     return 1.0 / np.sqrt(np.maximum(x, 1e-300))
 
 
+def rint(x: Value) -> Value:
+    """Return the nearest whole number, ties to even."""
+    if is_symbolic(x):
+        return _elementwise(_tape.rint, x)
+    return np.rint(x)
+
+
 def copysign(a: Value, b: Value) -> Value:
     """Return |a| with the sign of b."""
     if is_symbolic(a, b):

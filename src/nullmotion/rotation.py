@@ -51,6 +51,11 @@ def doubled_rate(q: Quaternion, omega: Any) -> Quaternion:
     )
 
 
+def shortest(q: Quaternion) -> Quaternion:
+    """Return q or -q, the same attitude, with a scalar part that is not negative."""
+    return q * ops.where(ops.less(q[0], 0.0), -1.0, 1.0)
+
+
 def matrix(q: Quaternion) -> Any:
     """Return the direction cosine matrix C_BN of a unit quaternion q_BN, (3, 3)."""
     w, x, y, z = q

@@ -173,6 +173,13 @@ class CmgArray:
         factor = 1.0 / ops.where(ops.less(1.0, excess), excess, 1.0)
         return rates * np.asarray(factor)[..., None]
 
+    def altered(self, **fields: Any) -> CmgArray:
+        """Return a copy with some fields replaced, unchecked: they may hold symbols."""
+        copy = object.__new__(CmgArray)
+        for name in self.__dataclass_fields__:
+            object.__setattr__(copy, name, fields.get(name, getattr(self, name)))
+        return copy
+
     def within_angle_limits(self, delta: Any) -> Any:
         """Return angles stopped at the gimbals' end stops [rad]."""
         if not self.has_angle_limits:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from nullmotion import tree
@@ -104,11 +104,13 @@ def _trace_stages(
         return Piece(finish(tape, inputs, outputs, fuse), period, phase, len(kept)), record
     ids = [o.node if isinstance(o, Symbol) else tape.constant(o) for o in outputs]
     found = carry.find(tape, [s.node for s in state_in], [p.node for p in parameter_in], ids)
-    prime = finish(tape, [*state_in, *parameter_in], [Symbol(tape, i) for i in found.nodes], fuse)
+    handed = [Symbol(tape, i) for i in found.nodes]
+    prime = finish(tape, [*state_in, *parameter_in], handed, fuse)
+    prime = replace(prime, guards={})  # the step's own guards look at the same angles
     extra = [tape.input(f"c{i}") for i in range(len(found.nodes))]
     outputs += [Symbol(tape, i) for i in found.updates]
-    replace = dict(zip(found.nodes, (e.node for e in extra), strict=True))
-    program = finish(tape, [*inputs, *extra], outputs, fuse, replace)
+    instead = dict(zip(found.nodes, (e.node for e in extra), strict=True))
+    program = finish(tape, [*inputs, *extra], outputs, fuse, instead)
     return Piece(program, period, phase, len(kept), prime), record
 
 

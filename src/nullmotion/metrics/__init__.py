@@ -9,4 +9,11 @@ registry = Registry("metric", "nullmotion.metrics", "nullmotion.metrics.base.Met
 names = registry.names
 get = registry.get
 
-__all__ = ["Metric", "Sample", "get", "names", "registry"]
+
+
+def applicable(body: bool) -> list[str]:
+    """Return the names of the metrics that a run has, with or without a spacecraft."""
+    return [name for name in names() if body or not get(name).needs_body]
+
+
+__all__ = ["Metric", "Sample", "applicable", "get", "names", "registry"]

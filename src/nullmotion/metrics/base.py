@@ -11,7 +11,8 @@ import numpy as np
 from nullmotion import linalg, ops
 from nullmotion.array.model import CmgArray
 
-Reduction = Literal["min", "max", "rms", "mean", "final"]
+Reduction = Literal["min", "max", "rms", "mean", "final", "total", "latest"]
+PLAIN = ("total", "latest")  # reductions whose result goes by the metric's own name
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,13 @@ class Sample:
         previous_rates: Those of the step before (equal to ``rates`` in the first step).
         momentum_wanted: h(0) + integral of hdot so far [N m s], (m,).
         impulse: Integral of A delta_dot so far, by the run's integrator [N m s], (m,).
+        asked: Rates asked by the law in force, before any limit [rad/s], (n,).
+        motor_torque: Torque of the gimbal motors about their axes [N m], (n,).
+        speed: Gimbal rates at this instant [rad/s], (n,); ``rates`` is their mean over the step.
+        q_BN: Attitude, (4,); None without a spacecraft, as the next two.
+        omega_BN_B: Body rate in B [rad/s], (3,).
+        q_BR: Attitude error against the reference, scalar part not negative, (4,).
+        dt: Integration step [s].
     """
 
     array: CmgArray
@@ -38,6 +46,13 @@ class Sample:
     previous_rates: Any
     momentum_wanted: Any
     impulse: Any
+    asked: Any = None
+    motor_torque: Any = None
+    speed: Any = None
+    q_BN: Any = None
+    omega_BN_B: Any = None
+    q_BR: Any = None
+    dt: Any = None
 
     @cached_property
     def jacobian(self) -> Any:
@@ -76,7 +91,8 @@ class Metric:
 
     A metric is a scalar of a `Sample` (method `of`, without branches: it runs in the
     kernel as well), summed up over a run by its ``reductions``: the summary holds
-    ``min_<name>`` and so on, and a scenario may stop at ``<name>_below`` or
+    ``min_<name>`` and so on (``total``, the integral over time, and ``latest``, the
+    greatest value, go by ``<name>`` alone), and a scenario may stop at ``<name>_below`` or
     ``<name>_above``.
 
     Class attributes:
@@ -86,6 +102,7 @@ class Metric:
         citation: Where it is defined.
         reductions: How a run sums it up.
         needs_rates: True if it has no meaning at the end of a run, where no rate applies.
+        needs_body: True if it has no meaning without a spacecraft.
     """
 
     name: ClassVar[str] = ""
@@ -94,6 +111,7 @@ class Metric:
     citation: ClassVar[str] = ""
     reductions: ClassVar[tuple[Reduction, ...]] = ("min", "final")
     needs_rates: ClassVar[bool] = False
+    needs_body: ClassVar[bool] = False
 
     def of(self, sample: Sample) -> Any:
         """Return the metric at one sample."""

@@ -95,7 +95,7 @@ def setup(law: Law, manoeuvre: str) -> Setup:
         steps=1000,
         integrator="euler",
         stop=(Stop(metrics.get("momentum_state")(), 0.2),),
-        metrics=tuple(metrics.get(name)() for name in metrics.names()),
+        metrics=tuple(metrics.get(name)() for name in metrics.applicable(False)),
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import threading
 from collections.abc import Sequence
@@ -15,9 +16,10 @@ from nullmotion import tree
 from nullmotion.compile import llvm
 from nullmotion.compile.kernel import LoopKernel
 from nullmotion.errors import InputError
-from nullmotion.sim.run import Progress, Record, _columns, check_history, run, schedule, totals
+from nullmotion.sim.run import Progress, _columns, check_history, run, schedule, totals
 from nullmotion.sim.setup import Setup
-from nullmotion.sim.stages import Outcome, loop, parameters
+from nullmotion.sim.stages import loop
+from nullmotion.sim.state import Outcome, Record, parameters
 
 _WORK = 2_000_000  # run-steps in one call: about a tenth of a second, then a look at Ctrl-C
 
@@ -33,6 +35,8 @@ class BatchResult:
         final_gimbal_rad: Final gimbal angles, (runs, n).
         final_momentum: Final momentum of the true array [N m s], (runs, m).
         status: Flag to a boolean for each run.
+        final_q_BN: Final attitude, (runs, 4); None without a spacecraft.
+        final_omega_BN_B: Final body rate [rad/s], (runs, 3).
         history: Decimated histories on request, each (runs, samples, ...).
         backend: ``kernel`` or ``python``.
         instruction_set: Vector instructions of the kernel.
@@ -47,6 +51,8 @@ class BatchResult:
     history: Record | None = None
     backend: str = "kernel"
     instruction_set: str = ""
+    final_q_BN: np.ndarray | None = None
+    final_omega_BN_B: np.ndarray | None = None
 
     def __len__(self) -> int:
         """Return the number of runs."""
@@ -62,6 +68,9 @@ def run_batch(
     *,
     delta: np.ndarray | None = None,
     hdot: np.ndarray | None = None,
+    target: np.ndarray | None = None,
+    q_BN: np.ndarray | None = None,
+    omega_BN_B: np.ndarray | None = None,
     setups: Sequence[Setup] | None = None,
     threads: int | None = None,
     history: int = 0,
@@ -73,8 +82,11 @@ def run_batch(
         base: What is common.
         delta: Start angles of each run [rad], (runs, n); all as in ``base`` if None.
         hdot: Constant command of each run [N m], (runs, m); all as in ``base`` if None.
-        setups: One setup for each run (other values may differ too); ``delta`` and ``hdot``
-            then still override.
+        target: Attitude to go to of each run, (runs, 4), with a spacecraft.
+        q_BN: Attitude at the start of each run, (runs, 4).
+        omega_BN_B: Body rate at the start of each run [rad/s], (runs, 3).
+        setups: One setup for each run (other values may differ too); what is given beside
+            it overrides.
         threads: Threads; as many as the machine has cores by default.
         history: Keep every so many steps of every run (0: none).
         progress: Called with the finished share.
@@ -84,7 +96,9 @@ def run_batch(
         TraceError: When the law cannot be traced: run such laws one by one.
         MemoryLimitError: When the histories would not fit.
     """
-    values, varying = _values(base, delta, hdot, setups)
+    given = {"delta": delta, "hdot": hdot, "target": target}
+    given |= {"spacecraft.q_BN": q_BN, "spacecraft.omega_BN_B": omega_BN_B}
+    values, varying = _values(base, given, setups)
     runs = values.shape[1]
     if history:
         check_history(base, runs, history)
@@ -98,34 +112,54 @@ def run_batch(
 
 
 def _values(
-    base: Setup, delta: np.ndarray | None, hdot: np.ndarray | None, setups: Sequence[Setup] | None
+    base: Setup, given: dict[str, np.ndarray | None], setups: Sequence[Setup] | None
 ) -> tuple[np.ndarray, tuple[bool, ...]]:
     """Return the values of the varying leaves, (leaves, runs), and which leaves vary."""
     own = parameters(base)
-    leaves = np.array(tree.flatten(own), float)
+    size = len(tree.flatten(own))
     columns: dict[int, np.ndarray] = {}
-    runs = {len(x) for x in (delta, hdot, setups) if x is not None}
-    if len(runs) > 1 or not runs or 0 in runs:
+    counts = {len(x) for x in (*given.values(), setups) if x is not None}
+    if len(counts) > 1 or not counts or 0 in counts:
         raise InputError(
-            "runs", sorted(runs), "the same number of runs (at least one) in every value"
+            "runs", sorted(counts), "the same number of runs (at least one) in every value"
         )
-    count = runs.pop()
+    count = counts.pop()
     if setups is not None:
         columns.update(_differing(base, setups))
-    at = {name: len(tree.flatten(own[: own._fields.index(name)])) for name in ("delta", "hdot")}
-    for name, given, width in (("delta", delta, base.array.n), ("hdot", hdot, base.array.m)):
-        if given is None:
-            continue
-        table = np.asarray(given, float)
-        if table.shape != (count, width) or not np.isfinite(table).all():
-            raise InputError(name, table.shape, f"{count} x {width} finite numbers")
-        if name == "hdot" and base.scheduled:
-            raise InputError("hdot", table.shape, "no constant commands: this setup has a schedule")
-        columns.update({at[name] + j: table[:, j] for j in range(width)})
-    varying = tuple(i in columns for i in range(len(leaves)))
+    for name, value in given.items():
+        if value is not None:
+            columns.update(_override(base, own, name, value, count))
+    varying = tuple(i in columns for i in range(size))
     return np.array([np.broadcast_to(columns[i], (count,)) for i in sorted(columns)]).reshape(
         -1, count
     ), varying
+
+
+def _override(
+    base: Setup, own: Any, name: str, value: np.ndarray, count: int
+) -> dict[int, np.ndarray]:
+    """Return the columns of one value that differs between runs, by leaf."""
+    found: Any = own
+    for part in name.split("."):
+        found = None if found is None else getattr(found, part)
+    if found is None or (name == "hdot" and base.scheduled):
+        raise InputError(name, np.shape(value), "nothing: this setup has no such value")
+    table = np.asarray(value, float)
+    if table.shape != (count, len(found)) or not np.isfinite(table).all():
+        raise InputError(name, table.shape, f"{count} x {len(found)} finite numbers")
+    if name in ("target", "spacecraft.q_BN"):
+        table = table / np.linalg.norm(table, axis=1, keepdims=True)
+    first = _first_leaf(own, name)
+    return {first + j: table[:, j] for j in range(len(found))}
+
+
+def _first_leaf(own: Any, name: str) -> int:
+    """Return the number of leaves before a field given by dotted name."""
+    head, _, rest = name.partition(".")
+    fields = getattr(own, "_fields", None) or [f.name for f in dataclasses.fields(own)]
+    before = [getattr(own, f) for f in fields[: list(fields).index(head)]]
+    first = len(tree.flatten(tuple(before)))
+    return first + _first_leaf(getattr(own, head), rest) if rest else first
 
 
 def _differing(base: Setup, setups: Sequence[Setup]) -> dict[int, np.ndarray]:
@@ -153,7 +187,7 @@ def structure(setup: Setup) -> Any:
         setup.metrics,
         setup.hdot.shape,
     )
-    table = setup.hdot.tobytes() if setup.scheduled else b""
+    table = setup.table.tobytes() if setup.scheduled else b""
     stops = tuple((s.metric, s.below) for s in setup.stop)
     return (tree.structure(parameters(setup)), rest, table, stops)
 
@@ -223,7 +257,8 @@ class _Job:
         if self.history is not None:
             flat = self.history.reshape(-1, kernel.records)
             columns = _columns(kernel.traced.record_like, flat)
-            history = Record(*[c.reshape(runs, -1, c.shape[1]) for c in columns])
+            samples = self.history.shape[1]
+            history = Record(*[c.reshape(runs, samples, c.shape[1]) for c in columns])
         return BatchResult(
             totals(base, outcome.sums, outcome.taken),
             np.where(code > 0, outcome.taken * base.dt, np.nan),
@@ -234,6 +269,8 @@ class _Job:
             history,
             "kernel",
             llvm.host().instruction_set,
+            outcome.q_BN if base.spacecraft else None,
+            outcome.omega_BN_B if base.spacecraft else None,
         )
 
 

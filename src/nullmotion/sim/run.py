@@ -14,7 +14,9 @@ from nullmotion.compile.kernel import LoopKernel
 from nullmotion.compile.loop import Loop, run_on_host
 from nullmotion.errors import InputError, MemoryLimitError, TraceError
 from nullmotion.sim.setup import Setup
-from nullmotion.sim.stages import Outcome, Record, loop, reductions
+from nullmotion.metrics.base import PLAIN
+from nullmotion.sim.stages import loop, reductions
+from nullmotion.sim.state import Outcome, Record
 from nullmotion.sim.trajectory import Trajectory
 
 Backend = Literal["auto", "kernel", "python"]
@@ -46,6 +48,8 @@ def run(
         raise InputError("decimate", decimate, "a whole number from 1")
     check_history(setup, 1, decimate)
     what = loop(setup)
+    if setup.integrator == "dop853":
+        return _run_python(setup, what, decimate, progress)
     if backend == "kernel" or (backend == "auto" and setup.law.traceable):
         try:
             return _run_kernel(setup, what, decimate, progress)
@@ -63,15 +67,15 @@ def schedule(setup: Setup) -> np.ndarray:
     if not setup.scheduled:
         return np.zeros((1, 0))
     samples = setup.steps // setup.period_steps + 1
-    rows = np.minimum(np.arange(samples), len(setup.hdot) - 1)
-    return np.ascontiguousarray(setup.hdot[rows])
+    rows = np.minimum(np.arange(samples), len(setup.table) - 1)
+    return np.ascontiguousarray(setup.table[rows])
 
 
 def check_history(setup: Setup, runs: int, decimate: int) -> None:
     """Refuse a history that would take more than half of the memory."""
     import os
 
-    values = 3 * setup.array.n + 3 * setup.array.m
+    values = 5 * setup.array.n + 3 * setup.array.m + (11 if setup.spacecraft else 0)
     need = 8 * runs * (setup.steps // decimate + 1) * values
     have = (
         os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
@@ -139,7 +143,7 @@ def assemble(
     kept = taken // decimate + 1
     cut = Record(*[np.array(c[:kept]) for c in columns])
     if taken % decimate == 0:
-        cut.rates[-1], cut.asked[-1] = np.nan, np.nan
+        cut.rates[-1], cut.asked[-1], cut.motor_torque[-1] = np.nan, np.nan, np.nan
     code = int(outcome.stop)
     stopped = code > 0
     return Trajectory(
@@ -151,6 +155,11 @@ def assemble(
         hdot=cut.hdot,
         momentum_wanted=cut.wanted,
         impulse=cut.impulse,
+        q_BN=cut.q_BN if setup.spacecraft else None,
+        omega_BN_B=cut.omega_BN_B if setup.spacecraft else None,
+        reference=cut.reference if setup.spacecraft else None,
+        speed=cut.speed,
+        motor_torque=cut.motor_torque,
         metrics=totals(setup, outcome.sums, taken),
         stopped_at_s=round(taken * setup.dt, 12) if stopped else None,
         stop_reason=setup.stop[code - 1].reason if stopped else "end of run",
@@ -169,7 +178,12 @@ def totals(setup: Setup, sums: Any, taken: Any) -> dict[str, Any]:
             value = np.sqrt(value / steps)
         elif reduction == "mean":
             value = value / steps
-        result[f"{reduction}_{metric.name}"] = np.where(np.isinf(value), np.nan, value)[()]
+        elif reduction == "total":
+            value = value * setup.dt
+        elif reduction == "latest":  # a time beyond the run's end was not reached
+            value = np.where(value > taken * setup.dt * (1 + 1e-12), np.nan, value)
+        name = metric.name if reduction in PLAIN else f"{reduction}_{metric.name}"
+        result[name] = np.where(np.isinf(value), np.nan, value)[()]
     return result
 
 

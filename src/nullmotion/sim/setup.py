@@ -129,6 +129,9 @@ class Setup:
         for event in self.events:
             if not 0 <= event.cmg < self.array.n:
                 raise InputError("event.cmg", event.cmg, f"from 0 to {self.array.n - 1}")
+        for metric in (*self.metrics, *(s.metric for s in self.stop)):
+            if metric.needs_body and self.spacecraft is None:
+                raise InputError("metrics", metric.name, "a metric that needs no spacecraft")
         if self.spacecraft is not None:
             self._check_attitude()
 

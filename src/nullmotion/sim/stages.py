@@ -1,92 +1,27 @@
-"""A momentum-rate run as a loop: what happens at each step, said once.
+"""A run as a loop: what happens at each step, said once.
 
-At step k (time t = k dt): the command is read; the run stops if a condition holds;
-the law is sampled every ``period_steps`` and its limited rates queued; the rates that
-are due act; the metrics are taken; the plant moves. The last pass (k = steps) only
-takes the metrics of the final state.
+At step k (time t = k dt): the command is read or made by the controller; the run stops if a
+condition holds; the law is sampled every ``period_steps`` and its limited rates queued; the
+rates that are due act on the gimbals' servos; the metrics are taken; the plant moves. The last
+pass (k = steps) only takes the metrics of the final state.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from nullmotion import ops, tree
-from nullmotion.array.model import CmgArray
+from nullmotion import ops, rotation, tree
 from nullmotion.compile.loop import Loop, Stage
-from nullmotion.law import Law, Observation
+from nullmotion.law import Observation
 from nullmotion.metrics.base import Metric, Sample
-from nullmotion.sim.integrators import INTEGRATORS
+from nullmotion.sim import command, plant
 from nullmotion.sim.setup import Setup
+from nullmotion.sim.state import Outcome, Parameters, Record, RunState, parameters
+from nullmotion.spacecraft import faults, motion
 
 TIME_UP = -1.0  # stop code of a run that lasted its full time; i + 1 is stop condition i
-
-
-class RunState(NamedTuple):
-    """What a run carries from step to step (floats or symbols)."""
-
-    stop: Any
-    taken: Any
-    delta: Any
-    impulse: Any
-    wanted: Any
-    hdot: Any
-    asked: Any
-    queue: tuple[Any, ...]
-    rates: Any
-    previous: Any
-    law: Any
-    sums: tuple[Any, ...]
-
-
-class Parameters(NamedTuple):
-    """Everything of a run that is a number; what varies in a batch becomes a kernel parameter."""
-
-    array: CmgArray
-    plant: CmgArray | None
-    law: Law
-    encoder_bias: Any
-    delta: Any
-    hdot: Any
-    dt: Any
-    thresholds: Any
-
-
-class Record(NamedTuple):
-    """What a history keeps of each step."""
-
-    delta: Any
-    rates: Any
-    asked: Any
-    hdot: Any
-    impulse: Any
-    wanted: Any
-
-
-class Outcome(NamedTuple):
-    """What is kept of the final state."""
-
-    stop: Any
-    taken: Any
-    delta: Any
-    rates: Any
-    momentum: Any
-    sums: tuple[Any, ...]
-
-
-def parameters(setup: Setup) -> Parameters:
-    """Return the numbers of a setup."""
-    return Parameters(
-        setup.array,
-        setup.plant,
-        setup.law,
-        np.zeros(setup.array.n) if setup.encoder_bias is None else setup.encoder_bias,
-        setup.delta,
-        np.zeros(setup.array.m) if setup.scheduled else setup.hdot,
-        setup.dt,
-        np.array([s.threshold for s in setup.stop]),
-    )
 
 
 def reductions(metrics: tuple[Metric, ...]) -> list[tuple[Metric, str]]:
@@ -105,7 +40,8 @@ def loop(setup: Setup, varying: tuple[bool, ...] | None = None) -> Loop:
         Stage(run.command, period),
         Stage(run.check),
         Stage(run.sample, period),
-        Stage(lambda k, row, s, p: run.actuate(s, lag), period, late),
+        Stage(lambda k, row, s, p: s._replace(due=s.queue[lag]), period, late),
+        Stage(run.drive),
         Stage(run.measure),
         Stage(run.advance),
     )
@@ -115,18 +51,36 @@ def loop(setup: Setup, varying: tuple[bool, ...] | None = None) -> Loop:
         outputs=outcome,
         parameters=own,
         varying=flags,
-        row=setup.array.m if setup.scheduled else 0,
+        row=setup.table.shape[1] if setup.scheduled else 0,
         row_period=period,
         active=(lambda s: ops.equal(s.stop, 0.0)) if setup.stop else None,
-        record=lambda s: Record(s.delta, s.rates, s.asked, s.hdot, s.impulse, s.wanted),
-        recorded_after=5,
+        record=record,
+        recorded_after=6,
+    )
+
+
+def record(s: RunState) -> Record:
+    """Return what a history keeps of a step."""
+    return Record(
+        s.delta,
+        s.rates,
+        s.asked,
+        s.hdot,
+        s.impulse,
+        s.wanted,
+        s.q,
+        s.omega,
+        s.reference,
+        s.speed,
+        s.motor,
     )
 
 
 def outcome(s: RunState, p: Parameters) -> Outcome:
     """Return what is kept of the final state."""
-    plant = p.array if p.plant is None else p.plant
-    return Outcome(s.stop, s.taken, s.delta, s.rates, plant.momentum(s.delta), s.sums)
+    array = faults.as_it_is(p.true_array, p.events, s.taken * p.dt)
+    momentum = array.momentum(s.delta)
+    return Outcome(s.stop, s.taken, s.delta, s.rates, momentum, s.sums, s.q, s.omega)
 
 
 class _Run:
@@ -134,31 +88,41 @@ class _Run:
 
     def __init__(self, setup: Setup) -> None:
         self.setup = setup
-        self.integrate = INTEGRATORS[setup.integrator]
 
     def start(self, p: Parameters, queue: int) -> RunState:
         n, m = self.setup.array.n, self.setup.array.m
-        measured = p.delta + p.encoder_bias
-        sums = tuple(_EMPTY[r] for _, r in reductions(self.setup.metrics))
-        zero = np.zeros(n)
-        plant = p.array if p.plant is None else p.plant
+        zero, craft, nothing = np.zeros(n), p.spacecraft, ()
+        reading: Any = nothing
+        if p.servo is not None and p.servo.has("encoder_resolution"):
+            reading = motion.quantised(p.delta, p.servo.encoder_resolution)
+        reference = np.array([1.0, 0.0, 0.0, 0.0]) if p.target is None else p.target
         return RunState(
-            0.0,
-            0.0,
-            p.delta,
-            np.zeros(m),
-            plant.momentum(p.delta),
-            np.zeros(m),
-            zero,
-            (zero,) * queue,
-            zero,
-            zero,
-            p.law.init(p.array, measured),
-            sums,
+            stop=0.0,
+            taken=0.0,
+            delta=p.delta,
+            impulse=np.zeros(m),
+            wanted=p.true_array.momentum(p.delta),
+            hdot=np.zeros(m),
+            asked=zero,
+            queue=(zero,) * queue,
+            due=zero,
+            rates=zero,
+            previous=zero,
+            law=p.law.init(p.array, p.delta + p.encoder_bias),
+            sums=tuple(_EMPTY[r] for _, r in reductions(self.setup.metrics)),
+            q=craft.q_BN if craft else nothing,
+            omega=craft.omega_BN_B if craft else nothing,
+            reference=reference if craft else nothing,
+            controller=p.controller.init() if p.controller else nothing,
+            noise=nothing if p.noise is None else p.noise,
+            speed=zero,
+            acceleration=zero if p.servo else nothing,
+            reading=reading,
+            motor=zero,
         )
 
     def command(self, k: Any, row: Any, s: RunState, p: Parameters) -> RunState:
-        return s._replace(hdot=row if self.setup.scheduled else p.hdot)
+        return command.command(self.setup, k, row, s, p)
 
     def check(self, k: Any, row: Any, s: RunState, p: Parameters) -> RunState:
         """Find out whether the run ends before this step."""
@@ -176,65 +140,49 @@ class _Run:
 
     def sample(self, k: Any, row: Any, s: RunState, p: Parameters) -> RunState:
         """Ask the law and queue its limited rates."""
+        t = k * p.dt
+        array = command.known_array(t, s, p)
         observation = Observation(
-            delta=s.delta + p.encoder_bias,
+            delta=command.measured_angles(s, p),
             hdot=s.hdot,
-            t=k * p.dt,
+            t=t,
             period=p.dt * float(self.setup.period_steps),
             delta_dot=s.rates,
+            omega_BN_B=None if isinstance(s.omega, tuple) else s.omega,
         )
-        asked, state = p.law.step(p.array, observation, s.law)
-        return s._replace(asked=asked, law=state, queue=(p.array.limited(asked), *s.queue[:-1]))
+        asked, state = p.law.step(array, observation, s.law)
+        return s._replace(asked=asked, law=state, queue=(array.limited(asked), *s.queue[:-1]))
 
-    def actuate(self, s: RunState, lag: int) -> RunState:
-        """Let the rates act that were asked ``lag`` samples ago."""
-        return s._replace(rates=s.queue[lag])
+    def drive(self, k: Any, row: Any, s: RunState, p: Parameters) -> RunState:
+        return plant.drive(self.setup, k, s, p)
 
     def measure(self, k: Any, row: Any, s: RunState, p: Parameters) -> RunState:
         """Take the metrics of every sample a run reaches, of rates only where a step follows."""
-        s = s._replace(rates=self._moving(s, p))
         sample = self._sample_at(k, s, p)
         reached, going = ops.equal(s.taken, k), ops.equal(s.stop, 0.0)
         sums = []
         for (metric, reduction), old in zip(reductions(self.setup.metrics), s.sums, strict=True):
             new = _UPDATE[reduction](old, metric.of(sample))
-            sums.append(
-                ops.where(
-                    going if metric.needs_rates or reduction in ("rms", "mean") else reached,
-                    new,
-                    old,
-                )
-            )
+            steps_only = metric.needs_rates or reduction in _OVER_STEPS
+            sums.append(ops.where(going if steps_only else reached, new, old))
         return s._replace(sums=tuple(sums))
 
     def advance(self, k: Any, row: Any, s: RunState, p: Parameters) -> RunState:
         """Move the plant by one step unless the run has ended."""
-        plant = p.array if p.plant is None else p.plant
-        rates = s.rates
-        delta, impulse = self.integrate(
-            lambda d, _: (rates, plant.jacobian(d) @ rates), s.delta, s.impulse, p.dt
-        )
-        moved = (s.taken + 1.0, delta, impulse, s.wanted + p.dt * s.hdot, rates)
-        stayed = (s.taken, s.delta, s.impulse, s.wanted, s.previous)
+        moved = plant.advanced(self.setup, k, s, p)
+        moved |= {"taken": s.taken + 1.0, "wanted": s.wanted + p.dt * s.hdot}
         going = ops.equal(s.stop, 0.0)
-        taken, delta, impulse, wanted, previous = (
-            ops.where(going, new, old) for new, old in zip(moved, stayed, strict=True)
-        )
         return s._replace(
-            taken=taken, delta=delta, impulse=impulse, wanted=wanted, previous=previous
+            **{key: ops.where(going, new, getattr(s, key)) for key, new in moved.items()}
         )
-
-    def _moving(self, s: RunState, p: Parameters) -> Any:
-        """Return the rates that the end stops let through."""
-        plant = p.array if p.plant is None else p.plant
-        if not plant.has_angle_limits:
-            return s.rates
-        return (plant.within_angle_limits(s.delta + p.dt * s.rates) - s.delta) / p.dt
 
     def _sample_at(self, k: Any, s: RunState, p: Parameters) -> Sample:
         first = ops.equal(s.taken, 0.0)
+        body: dict[str, Any] = {}
+        if not isinstance(s.q, tuple):
+            body = {"q_BN": s.q, "omega_BN_B": s.omega, "q_BR": _error(s)}
         return Sample(
-            array=p.array if p.plant is None else p.plant,
+            array=faults.as_it_is(p.true_array, p.events, k * p.dt),
             delta=s.delta,
             hdot=s.hdot,
             t=k * p.dt,
@@ -242,15 +190,35 @@ class _Run:
             previous_rates=ops.where(first, s.rates, s.previous),
             momentum_wanted=s.wanted,
             impulse=s.impulse,
+            asked=s.asked,
+            motor_torque=s.motor,
+            speed=s.speed,
+            dt=p.dt,
+            **body,
         )
 
 
-_EMPTY = {"min": np.inf, "max": -np.inf, "rms": 0.0, "mean": 0.0, "final": np.nan}
+def _error(s: RunState) -> Any:
+    return rotation.shortest(rotation.multiply(rotation.conjugate(s.reference), s.q))
+
+
+_EMPTY = {
+    "min": np.inf,
+    "max": -np.inf,
+    "latest": -np.inf,
+    "rms": 0.0,
+    "mean": 0.0,
+    "total": 0.0,
+    "final": np.nan,
+}
+_OVER_STEPS = ("rms", "mean", "total")
 _UPDATE = {
     # the new value comes second: min and max return it when it is NaN
     "min": lambda old, new: ops.minimum(old, new),
     "max": lambda old, new: ops.maximum(old, new),
+    "latest": lambda old, new: ops.maximum(old, new),
     "rms": lambda old, new: old + new * new,
     "mean": lambda old, new: old + new,
+    "total": lambda old, new: old + new,
     "final": lambda old, new: new,
 }

@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from nullmotion import rotation
 from nullmotion.array import momentum_state
 from nullmotion.sim.setup import Setup
+from nullmotion.spacecraft import faults
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,11 @@ class Trajectory:
         status: Flags that the run raised; empty if all is well.
         backend: ``kernel`` or ``python``.
         instruction_set: Vector instructions of the kernel.
+        speed: Gimbal rates at each instant [rad/s], (N+1, n); `rates` are their means over steps.
+        motor_torque: Torque of the gimbal motors [N m], (N+1, n); NaN in the last row.
+        q_BN: Attitude, (N+1, 4); None without a spacecraft, as the next two.
+        omega_BN_B: Body rate in B [rad/s], (N+1, 3).
+        reference: Attitude to be reached or followed, q_RN, (N+1, 4).
     """
 
     setup: Setup
@@ -48,11 +55,55 @@ class Trajectory:
     status: list[str] = field(default_factory=list)
     backend: str = "kernel"
     instruction_set: str = ""
+    speed: np.ndarray | None = None
+    motor_torque: np.ndarray | None = None
+    q_BN: np.ndarray | None = None
+    omega_BN_B: np.ndarray | None = None
+    reference: np.ndarray | None = None
 
     @cached_property
     def momentum(self) -> np.ndarray:
         """Momentum of the true array [N m s], (N+1, m)."""
-        return self.setup.true_array.momentum(self.delta)
+        return self._of_array("momentum")
+
+    def _of_array(self, quantity: str) -> np.ndarray:
+        """Return what the true array gives at each instant, wheels that spin down included."""
+        array, events = self.setup.true_array, self.setup.events
+        if not faults.of_kind(events, "spin-down"):
+            return np.asarray(getattr(array, quantity)(self.delta))
+        rows = zip(self.t, self.delta, strict=True)
+        return np.array(
+            [getattr(faults.as_it_is(array, events, float(t)), quantity)(d) for t, d in rows]
+        )
+
+    @cached_property
+    def q_BR(self) -> np.ndarray | None:
+        """Attitude error against the reference, scalar part not negative, (N+1, 4)."""
+        if self.q_BN is None or self.reference is None:
+            return None
+        error = rotation.multiply(rotation.conjugate(self.reference.T), self.q_BN.T)
+        turned: np.ndarray = rotation.shortest(error).T
+        return turned
+
+    @cached_property
+    def pointing_error(self) -> np.ndarray | None:
+        """Angle between attitude and reference [rad], (N+1,)."""
+        if self.q_BR is None:
+            return None
+        sine = np.linalg.norm(self.q_BR[:, 1:], axis=1)
+        return 2.0 * np.arctan2(sine, np.abs(self.q_BR[:, 0]))
+
+    @cached_property
+    def inertial_momentum(self) -> np.ndarray | None:
+        """Angular momentum of spacecraft and array in N [N m s], (N+1, 3)."""
+        craft, servo = self.setup.spacecraft, self.setup.servo
+        if craft is None or self.q_BN is None or self.omega_BN_B is None:
+            return None
+        array = self.setup.true_array
+        total = self.omega_BN_B @ craft.inertia + self.momentum @ array.torque_axes
+        if servo is not None and self.speed is not None:
+            total = total + (servo.inertia * self.speed) @ array.gimbal_axes
+        return np.einsum("kij,ki->kj", _matrices(self.q_BN), total)
 
     @cached_property
     def torque(self) -> np.ndarray:
@@ -61,7 +112,7 @@ class Trajectory:
 
     @cached_property
     def _jacobians(self) -> np.ndarray:
-        return np.asarray(self.setup.true_array.jacobian(self.delta))
+        return self._of_array("jacobian")
 
     @cached_property
     def measures(self) -> dict[str, np.ndarray]:
@@ -117,10 +168,21 @@ class Trajectory:
             "final_gimbal_deg": np.degrees(self.delta[-1]).tolist(),
             "momentum_state": momentum_state.describe(self.measures["momentum_state"][-1]),
             "desaturation_due_at_s": self.desaturation_due_at_s,
+            **self._attitude(),
             **{key: float(value) for key, value in self.metrics.items()},
             "status": list(self.status) or ["ok"],
             "backend": self.backend,
             "instruction_set": self.instruction_set,
+        }
+
+    def _attitude(self) -> dict[str, Any]:
+        if self.q_BN is None or self.omega_BN_B is None:
+            return {}
+        yaw_pitch_roll = np.degrees(rotation.euler_321(self.q_BN[-1]))
+        return {
+            "final_q_BN": self.q_BN[-1].tolist(),
+            "final_euler_321_deg": yaw_pitch_roll.tolist(),
+            "final_omega_BN_B_rad_s": self.omega_BN_B[-1].tolist(),
         }
 
     def to_xarray(self) -> Any:
@@ -128,3 +190,8 @@ class Trajectory:
         from nullmotion.scenario import store
 
         return store.to_xarray(self)
+
+
+def _matrices(q: np.ndarray) -> np.ndarray:
+    """Return the direction cosine matrices C_BN of quaternions (k, 4), (k, 3, 3)."""
+    return np.array([rotation.matrix(row) for row in q])

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
-from nullmotion import ops, rotation
+from nullmotion import rotation
 
 
 @dataclass(frozen=True)
@@ -42,8 +42,7 @@ class AttitudeObservation:
         Of q and -q, which are the same attitude, the nearer to the identity: a
         controller on it never unwinds.
         """
-        error = rotation.multiply(rotation.conjugate(self.q_RN), self.q_BN)
-        return error * ops.where(ops.less(error[0], 0.0), -1.0, 1.0)
+        return rotation.shortest(rotation.multiply(rotation.conjugate(self.q_RN), self.q_BN))
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from nullmotion.errors import InputError
+from nullmotion.spacecraft.body import checked_vector
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,10 +31,19 @@ class Sensors:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        """Check signs."""
+        """Check shapes and signs."""
         for key in ("gyro_noise", "attitude_noise"):
             value = float(getattr(self, key))
             if not (np.isfinite(value) and value >= 0):
                 raise InputError(f"sensors.{key}", value, "finite and from 0")
             object.__setattr__(self, key, value)
-        object.__setattr__(self, "gyro_bias", np.asarray(self.gyro_bias, float))
+        bias = checked_vector("sensors.gyro_bias", self.gyro_bias)
+        object.__setattr__(self, "gyro_bias", bias)
+        whole = isinstance(self.seed, (int, np.integer)) and not isinstance(self.seed, bool)
+        if not whole or self.seed < 0:
+            raise InputError("sensors.seed", self.seed, "a whole number from 0")
+
+    @property
+    def noisy(self) -> bool:
+        """Whether anything is drawn."""
+        return any(not isinstance(v, float) or v > 0 for v in (self.gyro_noise, self.attitude_noise))

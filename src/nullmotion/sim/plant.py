@@ -1,0 +1,84 @@
+"""The plant of a run: how gimbals and body move over a step."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from nullmotion import rotation
+from nullmotion.sim.setup import Setup
+from nullmotion.sim.state import Parameters, RunState
+from nullmotion.spacecraft import dynamics, faults, motion
+from nullmotion.spacecraft.motion import Motion
+
+
+def drive(setup: Setup, k: Any, s: RunState, p: Parameters) -> RunState:
+    """Return the state with the gimbals' motion over this step."""
+    t, delta = k * p.dt, s.delta
+    array = faults.as_it_is(p.true_array, p.events, t)
+    turning = _turning(array, s)
+    if p.servo is None:
+        moved = motion.ideal(array, p.events, delta, s.due, s.previous, t, p.dt)
+        return s._replace(rates=moved.rate, speed=moved.rate, motor=-turning)
+    reading: Any = ()
+    if p.servo.has("encoder_resolution"):
+        reading = s.reading, motion.quantised(delta, p.servo.encoder_resolution)
+    moved = motion.driven(
+        p.servo, array, p.events, delta, s.due, s.speed, reading, turning, t, p.dt
+    )
+    return s._replace(
+        rates=moved.mean(p.dt),
+        speed=moved.rate,
+        acceleration=moved.acceleration,
+        motor=moved.torque,
+        reading=reading[1] if reading else s.reading,
+    )
+
+
+def _turning(array: Any, s: RunState) -> Any:
+    """Return omega . c_i for each CMG (c_i: column of A): the gyroscopic torque about its gimbal."""
+    if isinstance(s.omega, tuple):
+        return np.zeros(array.n)
+    return (array.torque_axes @ s.omega) @ array.jacobian(s.delta)
+
+
+def motion_of(s: RunState, p: Parameters) -> Motion:
+    """Return the motion that `drive` found."""
+    if p.servo is None:
+        return Motion(s.rates, None, s.rates, s.motor)
+    return Motion(s.speed, s.acceleration, s.speed + p.dt * s.acceleration, s.motor)
+
+
+def advanced(setup: Setup, k: Any, s: RunState, p: Parameters) -> dict[str, Any]:
+    """Return what a step changes of the state."""
+    moved, t = motion_of(s, p), k * p.dt
+    found = {"delta": moved.angle_at(s.delta, p.dt), "previous": s.rates}
+    if p.servo is not None:
+        found["speed"] = moved.end_rate
+    if setup.spacecraft is None or p.spacecraft is None:
+        return found | {"impulse": s.impulse + _impulse(setup, s, p, moved, t)}
+    vehicle = dynamics.Vehicle(
+        p.spacecraft, p.true_array, p.servo, p.events, p.disturbance, p.desaturation
+    )
+    step = dynamics.INTEGRATORS[setup.integrator]
+    body = step(vehicle, dynamics.Body(s.q, s.omega, s.impulse), s.delta, moved, t, p.dt)
+    return found | {
+        "q": rotation.normalised(body.q),
+        "omega": body.omega,
+        "impulse": body.impulse,
+    }
+
+
+def _impulse(setup: Setup, s: RunState, p: Parameters, moved: Motion, t: Any) -> Any:
+    """Return the integral of A delta_dot over the step by the run's integrator [N m s]."""
+
+    def given(since: Any) -> Any:
+        array = faults.as_it_is(p.true_array, p.events, t + since)
+        return array.jacobian(moved.angle_at(s.delta, since)) @ moved.rate_at(since)
+
+    if setup.integrator == "euler":
+        return p.dt * given(0.0)
+    if setup.integrator == "semi-implicit-euler":
+        return p.dt * given(p.dt)
+    return (p.dt / 6.0) * (given(0.0) + 4.0 * given(0.5 * p.dt) + given(p.dt))

@@ -1,0 +1,144 @@
+"""The records of a run: what it carries, what is put in, what is kept."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from nullmotion.array.model import CmgArray
+from nullmotion.law import Law
+from nullmotion.sim.setup import Setup
+from nullmotion.spacecraft import (
+    Controller,
+    Desaturation,
+    Disturbance,
+    Event,
+    Sensors,
+    Servo,
+    Spacecraft,
+)
+
+
+class RunState(NamedTuple):
+    """What a run carries from step to step (floats or symbols); () where there is no such thing.
+
+    ``due`` is the rate command in force, ``rates`` the mean rate of the step, ``speed`` the
+    rate at its start, ``reading`` the encoder a step before, ``motor`` the motor torque.
+    """
+
+    stop: Any
+    taken: Any
+    delta: Any
+    impulse: Any
+    wanted: Any
+    hdot: Any
+    asked: Any
+    queue: tuple[Any, ...]
+    due: Any
+    rates: Any
+    previous: Any
+    law: Any
+    sums: tuple[Any, ...]
+    q: Any
+    omega: Any
+    reference: Any
+    controller: Any
+    noise: Any
+    speed: Any
+    acceleration: Any
+    reading: Any
+    motor: Any
+
+
+class Parameters(NamedTuple):
+    """Everything of a run that is a number; what varies in a batch becomes a kernel parameter."""
+
+    array: CmgArray
+    plant: CmgArray | None
+    law: Law
+    encoder_bias: Any
+    delta: Any
+    hdot: Any
+    dt: Any
+    thresholds: Any
+    momentum_target: Any
+    spacecraft: Spacecraft | None
+    controller: Controller | None
+    target: Any
+    servo: Servo | None
+    sensors: Sensors | None
+    noise: Any
+    disturbance: Disturbance | None
+    desaturation: Desaturation | None
+    events: tuple[Event, ...]
+
+    @property
+    def true_array(self) -> CmgArray:
+        """The array that really turns, before any event."""
+        return self.array if self.plant is None else self.plant
+
+
+class Record(NamedTuple):
+    """What a history keeps of each step."""
+
+    delta: Any
+    rates: Any
+    asked: Any
+    hdot: Any
+    impulse: Any
+    wanted: Any
+    q_BN: Any
+    omega_BN_B: Any
+    reference: Any
+    speed: Any
+    motor_torque: Any
+
+
+class Outcome(NamedTuple):
+    """What is kept of the final state."""
+
+    stop: Any
+    taken: Any
+    delta: Any
+    rates: Any
+    momentum: Any
+    sums: tuple[Any, ...]
+    q_BN: Any
+    omega_BN_B: Any
+
+
+def parameters(setup: Setup) -> Parameters:
+    """Return the numbers of a setup."""
+    zero = np.zeros(setup.array.m)
+    quiet = setup.sensors and dataclasses.replace(setup.sensors, seed=0)
+    return Parameters(
+        setup.array,
+        setup.plant,
+        setup.law,
+        np.zeros(setup.array.n) if setup.encoder_bias is None else setup.encoder_bias,
+        setup.delta,
+        zero if setup.hdot.ndim == 2 else setup.hdot,
+        setup.dt,
+        np.array([s.threshold for s in setup.stop]),
+        setup.momentum_target,
+        setup.spacecraft,
+        setup.controller,
+        setup.target,
+        setup.servo,
+        quiet,
+        _noise(setup),
+        setup.disturbance,
+        setup.desaturation,
+        setup.events,
+    )
+
+
+def _noise(setup: Setup) -> np.ndarray | None:
+    """Return the start of the run's random numbers; None where none are drawn."""
+    if setup.sensors is None or not setup.sensors.noisy:
+        return None
+    from nullmotion.spacecraft.random import seeded
+
+    return seeded(setup.sensors.seed)
