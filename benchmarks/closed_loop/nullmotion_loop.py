@@ -1,13 +1,13 @@
-"""The workload on nullmotion: plain source for one run, traced and compiled to a SIMD loop.
+"""The workload on nullmotion's own simulation: body, controller, law and loop are the package's.
 
-The spacecraft stands here as plain functions; the array, the laws, the small linear
-algebra and the loop kernel are the package's own.
+The laws stand here, as a user's own would: the workload's damping is none of the catalogue's.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 import workload as w
@@ -15,93 +15,76 @@ import workload as w
 from nullmotion import linalg, ops
 from nullmotion.array.model import CmgArray
 from nullmotion.compile.kernel import LoopKernel
-from nullmotion.compile.loop import Loop, Stage
-from nullmotion.compile.tape import unguarded
+from nullmotion.law import Law, Observation
+from nullmotion.sim import Setup, batch, stages
+from nullmotion.spacecraft import Spacecraft, controllers
 
 
-class State(NamedTuple):
-    """Attitude, body rate, gimbal angles."""
+@dataclass(frozen=True)
+class Steering(Law):
+    """One of the workload's three laws."""
 
-    q: Any
-    omega: Any
-    delta: Any
+    kind: str = "sr"
+    name: ClassVar[str] = "workload"
+
+    def step(self, array: CmgArray, obs: Observation, state: Any) -> tuple[Any, Any]:
+        """Return the gimbal rates."""
+        a, hdot = array.jacobian(obs.delta), obs.hdot
+        if self.kind == "svd":
+            rows = linalg.rows(a, hdot)
+            s1, s2, s3 = rows.squares
+            return rows.solve(np.array([s1, s2, s3 + 0.01 * ops.exp(-10.0 * s3)])), state
+        gram = a @ a.T
+        adj = linalg.adjugate(gram)
+        det = gram[0] @ adj[:, 0]
+        damped = gram + 0.01 * ops.exp(-10.0 * det) * np.eye(3)
+        if self.kind == "sr":
+            return a.T @ linalg.solve(damped, hdot), state
+        momenta = array.rotor_momenta(obs.delta)
+        gradient = np.array([-2.0 * (momenta[i] @ (adj @ a[:, i])) for i in range(4)])
+        null = 0.5 * gradient
+        return a.T @ linalg.solve(damped, hdot - a @ null) + null, state
 
 
-def steering(law: str, array: CmgArray, delta: Any, hdot: Any) -> Any:
-    """Return gimbal rates by one of the three laws."""
-    a = array.jacobian(delta)
-    if law == "svd":
-        rows = linalg.rows(a, hdot)
-        s1, s2, s3 = rows.squares
-        return rows.solve(np.array([s1, s2, s3 + 0.01 * ops.exp(-10.0 * s3)]))
-    gram = a @ a.T
-    adj = linalg.adjugate(gram)
-    det = gram[0] @ adj[:, 0]
-    damped = gram + 0.01 * ops.exp(-10.0 * det) * np.eye(3)
-    if law == "sr":
-        return a.T @ linalg.solve(damped, hdot)
-    momenta = array.rotor_momenta(delta)
-    gradient = np.array([-2.0 * (momenta[i] @ (adj @ a[:, i])) for i in range(4)])
-    null = 0.5 * gradient
-    return a.T @ linalg.solve(damped, hdot - a @ null) + null
-
-
-def _slopes(array: CmgArray, rates: Any, q: Any, omega: Any, delta: Any) -> tuple[Any, Any]:
-    """Return 2 q_dot and J omega_dot: what is constant beside them goes into the step sizes."""
-    momentum = w.INERTIA * omega + array.momentum(delta)
-    torque = -linalg.cross(omega, momentum) - array.jacobian(delta) @ rates
-    x, y, z = omega
-    doubled = np.array(
-        [
-            -q[1] * x - q[2] * y - q[3] * z,
-            q[0] * x + q[2] * z - q[3] * y,
-            q[0] * y - q[1] * z + q[3] * x,
-            q[0] * z + q[1] * y - q[2] * x,
-        ]
+def setup(law: str, steps: int) -> Setup:
+    """Return one run of the workload."""
+    return Setup(
+        CmgArray(w.GIMBAL_AXES, w.SPIN_AXES, 1.0, w.RATE_MAX),
+        Steering(law),
+        np.zeros(4),
+        np.zeros(3),
+        dt=w.DT,
+        steps=steps,
+        spacecraft=Spacecraft(w.INERTIA),
+        controller=controllers.create("quaternion-feedback", kp=w.KP, kw=w.KW),
+        target=np.array([1.0, 0.0, 0.0, 0.0]),
     )
-    return doubled, torque
-
-
-def loop(law: str) -> Loop:
-    """Return the closed loop of one law."""
-    array = CmgArray(w.GIMBAL_AXES, w.SPIN_AXES, 1.0, w.RATE_MAX)
-    dt = w.DT
-
-    def step(k: Any, row: Any, s: State, p: State) -> State:
-        flip = ops.where(ops.less(s.q[0], 0.0), -1.0, 1.0)
-        wanted = -(w.KP * flip) * s.q[1:] - w.KW * s.omega
-        hdot = -wanted - linalg.cross(s.omega, array.momentum(s.delta))
-        rates = array.limited(steering(law, array, s.delta, hdot))
-        middle, end = s.delta + (0.5 * dt) * rates, s.delta + dt * rates
-        u, v = 0.5 * dt, dt / w.INERTIA  # steps of 2 q_dot and of J omega_dot
-        a, b = _slopes(array, rates, s.q, s.omega, s.delta)
-        with unguarded():  # between two guarded angles
-            c, d = _slopes(array, rates, s.q + 0.5 * u * a, s.omega + 0.5 * v * b, middle)
-            e, f = _slopes(array, rates, s.q + 0.5 * u * c, s.omega + 0.5 * v * d, middle)
-            g, h = _slopes(array, rates, s.q + u * e, s.omega + v * f, end)
-        q = s.q + (u / 6.0) * (a + 2.0 * (c + e) + g)
-        omega = s.omega + (v / 6.0) * (b + 2.0 * (d + f) + h)
-        return State(q * ops.rsqrt(q @ q), omega, end)
-
-    example = State(np.zeros(4), np.zeros(3), np.zeros(4))
-    return Loop(lambda p: p, (Stage(step),), lambda s, p: s, example, (True,) * 11)
 
 
 def build(law: str, width: int | None = None) -> Callable[[Any, Any, Any, int], w.Batch]:
     """Return a compiled batch function (q, omega, delta, steps) -> final states."""
-    kernel = LoopKernel(loop(law), width=width)
+    kernels: dict[int, LoopKernel] = {}
     none = np.zeros(1)
 
-    def run(q: Any, omega: Any, delta: Any, steps: int) -> w.Batch:
-        runs = q.shape[1]
-        padded = -(-runs // kernel.width) * kernel.width
-        values = np.empty((11, padded))
-        values[:, :runs] = np.concatenate([q, omega, delta])
-        values[:, runs:] = values[:, runs - 1 : runs]
-        state = np.empty((kernel.carried, padded))
-        out = np.empty((kernel.outputs + len(kernel.flags), padded))
-        kernel.run(state, values, none, none, out, 0, padded, 0, steps, True)
-        return w.Batch(out[:4, :runs], out[4:7, :runs], out[7:11, :runs])
+    def kernel(steps: int) -> LoopKernel:
+        if steps not in kernels:
+            one = setup(law, steps)
+            rows = {"delta": one.delta, "spacecraft.q_BN": np.ones(4)}
+            rows["spacecraft.omega_BN_B"] = np.zeros(3)
+            varying = batch.values(one, {key: row[None] for key, row in rows.items()}, None)[1]
+            kernels[steps] = LoopKernel(stages.loop(one, varying), width=width)
+        return kernels[steps]
 
-    run.kernel = kernel  # type: ignore[attr-defined]
+    def run(q: Any, omega: Any, delta: Any, steps: int) -> w.Batch:
+        made, runs = kernel(steps), q.shape[1]
+        padded = -(-runs // made.width) * made.width
+        values = np.empty((11, padded))
+        values[:, :runs] = np.concatenate([delta, q, omega])
+        values[:, runs:] = values[:, runs - 1 : runs]
+        state = np.empty((made.carried, padded))
+        out = np.empty((made.outputs + len(made.flags), padded))
+        made.run(state, values, none, none, out, 0, padded, 0, steps, True)
+        found = [out[i, :runs] for i in range(made.outputs)]
+        return w.Batch(np.array(found[-7:-3]), np.array(found[-3:]), np.array(found[2:6]))
+
     return run

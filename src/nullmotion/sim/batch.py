@@ -18,7 +18,7 @@ from nullmotion.compile.kernel import LoopKernel
 from nullmotion.errors import InputError
 from nullmotion.sim.run import Progress, _columns, check_history, run, schedule, totals
 from nullmotion.sim.setup import Setup
-from nullmotion.sim.stages import loop
+from nullmotion.sim.stages import loop, passes
 from nullmotion.sim.state import Outcome, Record, parameters
 
 _WORK = 2_000_000  # run-steps in one call: about a tenth of a second, then a look at Ctrl-C
@@ -98,20 +98,22 @@ def run_batch(
     """
     given = {"delta": delta, "hdot": hdot, "target": target}
     given |= {"spacecraft.q_BN": q_BN, "spacecraft.omega_BN_B": omega_BN_B}
-    values, varying = _values(base, given, setups)
-    runs = values.shape[1]
+    table, varying = values(base, given, setups)
+    runs = table.shape[1]
     if history:
         check_history(base, runs, history)
     few = runs * base.steps < _WORK  # soon done: what is quickly compiled is enough
     kernel = LoopKernel(
-        loop(base, varying), recording=bool(history), width=llvm.host().lanes if few else None
+        loop(base, varying, recording=bool(history)),
+        recording=bool(history),
+        width=llvm.host().lanes if few else None,
     )
-    job = _Job(kernel, base, values, history)
+    job = _Job(kernel, base, table, history)
     _spread(job, runs, threads or os.cpu_count() or 1, progress)
     return job.result(runs)
 
 
-def _values(
+def values(
     base: Setup, given: dict[str, np.ndarray | None], setups: Sequence[Setup] | None
 ) -> tuple[np.ndarray, tuple[bool, ...]]:
     """Return the values of the varying leaves, (leaves, runs), and which leaves vary."""
@@ -210,7 +212,7 @@ class _Job:
 
     def block(self, start: int, lanes: int) -> int:
         """Run ``lanes`` runs from column ``start``; return how many."""
-        kernel, total = self.kernel, self.base.steps + 1
+        kernel, total = self.kernel, passes(self.base, self.history is not None)
         state = np.zeros((kernel.carried, lanes))
         shape = (
             (self.base.steps // self.every + 1, kernel.records, lanes)

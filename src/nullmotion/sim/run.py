@@ -47,7 +47,7 @@ def run(
     if decimate < 1:
         raise InputError("decimate", decimate, "a whole number from 1")
     check_history(setup, 1, decimate)
-    what = loop(setup)
+    what = loop(setup, recording=True)
     if setup.integrator == "dop853":
         return _run_python(setup, what, decimate, progress)
     if backend == "kernel" or (backend == "auto" and setup.law.traceable):

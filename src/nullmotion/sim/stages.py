@@ -29,11 +29,24 @@ def reductions(metrics: tuple[Metric, ...]) -> list[tuple[Metric, str]]:
     return [(m, r) for m in metrics for r in m.reductions]
 
 
-def loop(setup: Setup, varying: tuple[bool, ...] | None = None) -> Loop:
-    """Return a setup's loop; ``varying`` marks leaves of `parameters` that differ between runs."""
+def passes(setup: Setup, recording: bool) -> int:
+    """Return how often a run's loop goes round: the last pass looks at the final state."""
+    return setup.steps + (recording or bool(setup.stop or setup.metrics))
+
+
+def loop(
+    setup: Setup, varying: tuple[bool, ...] | None = None, *, recording: bool = False
+) -> Loop:
+    """Return a setup's loop.
+
+    Args:
+        setup: What to run.
+        varying: Marks the leaves of `parameters` that differ between runs; none by default.
+        recording: Whether a history is kept.
+    """
     own = parameters(setup)
     flags = varying or (False,) * len(tree.flatten(own))
-    run = _Run(setup)
+    run = _Run(setup, always=passes(setup, recording) == setup.steps)
     period = setup.period_steps
     late, lag = divmod(setup.delay_steps, period)[1], setup.delay_steps // period
     stages = (
@@ -86,8 +99,8 @@ def outcome(s: RunState, p: Parameters) -> Outcome:
 class _Run:
     """The stages of one setup; holds structure only, numbers come as parameters."""
 
-    def __init__(self, setup: Setup) -> None:
-        self.setup = setup
+    def __init__(self, setup: Setup, always: bool) -> None:
+        self.setup, self.always = setup, always  # always: every pass is a step
 
     def start(self, p: Parameters, queue: int) -> RunState:
         n, m = self.setup.array.n, self.setup.array.m
@@ -126,6 +139,8 @@ class _Run:
 
     def check(self, k: Any, row: Any, s: RunState, p: Parameters) -> RunState:
         """Find out whether the run ends before this step."""
+        if self.always:
+            return s._replace(stop=TIME_UP)
         stop = ops.where(ops.less(k, float(self.setup.steps)), 0.0, TIME_UP)
         sample = self._sample_at(k, s, p)
         for i, condition in reversed(list(enumerate(self.setup.stop))):
@@ -158,6 +173,8 @@ class _Run:
 
     def measure(self, k: Any, row: Any, s: RunState, p: Parameters) -> RunState:
         """Take the metrics of every sample a run reaches, of rates only where a step follows."""
+        if not self.setup.metrics:
+            return s
         sample = self._sample_at(k, s, p)
         reached, going = ops.equal(s.taken, k), ops.equal(s.stop, 0.0)
         sums = []
@@ -171,6 +188,8 @@ class _Run:
         """Move the plant by one step unless the run has ended."""
         moved = plant.advanced(self.setup, k, s, p)
         moved |= {"taken": s.taken + 1.0, "wanted": s.wanted + p.dt * s.hdot}
+        if self.always:
+            return s._replace(**moved)
         going = ops.equal(s.stop, 0.0)
         return s._replace(
             **{key: ops.where(going, new, getattr(s, key)) for key, new in moved.items()}
