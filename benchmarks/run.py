@@ -19,6 +19,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 import accuracy
 import latency
+import plan_search
 import throughput
 from common import HEAD, Row
 
@@ -47,6 +48,7 @@ def measure(quick: bool) -> tuple[list[Row], str]:
         "Closed loop of a spacecraft, one core": loops,
         "Threads": throughput.threads(quick),
         "Waiting times": latency.rows(quick),
+        "Plans, one core": plan_search.rows(quick),
         "Accuracy": accuracy.rows(quick),
     }
     everything = []

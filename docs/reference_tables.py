@@ -12,7 +12,10 @@ import numpy as np
 
 from nullmotion import layouts, metrics, papers
 from nullmotion.compile import elementary
-from nullmotion.scenario import library_names, load_scenario, schema, sections
+from nullmotion.metrics.base import PLAIN
+from nullmotion.plan import costs
+from nullmotion.scenario import library_names, load_scenario, schema, schema_spacecraft, sections
+from nullmotion.spacecraft import controllers
 
 _SECTIONS: dict[str, type[schema.Section]] = {
     "[scenario]": schema.About,
@@ -21,13 +24,22 @@ _SECTIONS: dict[str, type[schema.Section]] = {
     "[initial]": schema.InitialSection,
     "[law]": schema.LawSection,
     "[mission]": schema.MissionSection,
+    "[spacecraft]": schema_spacecraft.SpacecraftSection,
+    "[controller]": schema_spacecraft.ControllerSection,
+    "[servo]": schema_spacecraft.ServoSection,
+    "[sensors]": schema_spacecraft.SensorsSection,
+    "[disturbance]": schema_spacecraft.DisturbanceSection,
+    "[desaturation]": schema_spacecraft.DesaturationSection,
+    "[[event]]": schema_spacecraft.EventSection,
     "[simulation]": schema.SimulationSection,
+    "[plan]": schema_spacecraft.PlanSection,
     "[[compare.case]]": schema.CaseSection,
 }
 _BESIDE = {
     "[array]": "the parameters of the layout: see [the layouts](arrays.md#layouts)",
     "[law]": "the parameters of the law: see [its page](laws/index.md)",
     "[[compare.case]]": "the parameters of the law: see [its page](laws/index.md)",
+    "[controller]": "the parameters of the controller: see [attitude](attitude.md#controllers)",
 }
 _WORDS = {
     "number": "number",
@@ -71,9 +83,28 @@ def metric_table() -> Iterable[str]:
     """Return the metrics with the names of their sums."""
     rows = []
     for metric in map(metrics.get, metrics.names()):
-        sums = ", ".join(f"`{reduction}_{metric.name}`" for reduction in metric.reductions)
+        sums = ", ".join(
+            f"`{metric.name}`" if reduction in PLAIN else f"`{reduction}_{metric.name}`"
+            for reduction in metric.reductions
+        )
         rows.append((metric.title, sums, metric.unit, summary(metric), metric.citation))
     return table(("Metric", "In summaries", "Unit", "Meaning", "Source"), rows)
+
+
+def controller_table() -> Iterable[str]:
+    """Return the controllers with their parameters."""
+    rows = []
+    for entry in map(controllers.get, controllers.names()):
+        keys = ", ".join(f"`{sections.file_key(f)}`" for f in dataclasses.fields(entry))
+        rows.append((f"`{entry.name}`", keys, summary(entry), entry.citation))
+    return table(("Controller", "Parameters", "Torque on the vehicle", "Source"), rows)
+
+
+def cost_table() -> Iterable[str]:
+    """Return the costs of plans."""
+    found = map(costs.get, costs.names())
+    rows = [(f"`{entry.name}`", summary(entry), entry.citation) for entry in found]
+    return table(("Cost", "Meaning", "Source"), rows)
 
 
 def scenario_table() -> Iterable[str]:
@@ -160,6 +191,8 @@ def elementary_table() -> Iterable[str]:
 TABLES: dict[str, Callable[[], Iterable[str]]] = {
     "layouts": layout_table,
     "metrics": metric_table,
+    "controllers": controller_table,
+    "costs": cost_table,
     "scenarios": scenario_table,
     "papers": paper_table,
     "keys": key_tables,

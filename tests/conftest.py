@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -10,3 +13,30 @@ import pytest
 def rng() -> np.random.Generator:
     """A generator with a fixed seed."""
     return np.random.default_rng(20191211)
+
+
+@pytest.fixture(scope="session")
+def slew() -> Callable[..., Any]:
+    """A function that flies a slew of a small satellite by 30 deg; keywords change its setup."""
+    from nullmotion import laws, layouts, metrics, sim, spacecraft
+    from nullmotion.spacecraft import controllers
+
+    measured = tuple(metrics.get(name)() for name in metrics.names())
+
+    def fly(**changes: Any) -> Any:
+        setup = {
+            "array": layouts.pyramid(rate_limit=1.0),
+            "law": laws.create("sr"),
+            "delta": np.zeros(4),
+            "hdot": np.zeros(3),
+            "dt": 0.05,
+            "steps": 400,
+            "spacecraft": spacecraft.Spacecraft(np.array([10.0, 12.0, 8.0])),
+            "controller": controllers.create("quaternion-feedback", kp=5.0, kw=10.0),
+            "target": np.array([np.cos(np.pi / 12), np.sin(np.pi / 12), 0.0, 0.0]),
+            "servo": spacecraft.Servo(inertia=0.005, torque_limit=0.5),
+            "metrics": measured,
+        }
+        return sim.run(sim.Setup(**setup | changes))
+
+    return fly

@@ -32,6 +32,7 @@ _MODULES = {
     "layouts": "nullmotion.array.layouts",
     "laws": "nullmotion.laws",
     "ops": "nullmotion.ops",
+    "plan": "nullmotion.plan",
     "singularity": "nullmotion.singularity",
 }
 

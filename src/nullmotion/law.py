@@ -100,20 +100,24 @@ class Law:
 
 
 def check_parameters(
-    law: Law, positive: Sequence[str] = (), not_negative: Sequence[str] = ()
+    record: Any,
+    positive: Sequence[str] = (),
+    not_negative: Sequence[str] = (),
+    kind: str = "law",
 ) -> None:
     """Refuse parameters that are not finite numbers of their sign; make whole numbers floats.
 
     Args:
-        law: Law under construction.
+        record: Law (or other frozen dataclass) under construction.
         positive: Fields above 0; one that is None stays None.
         not_negative: Fields from 0 on.
+        kind: What the record is called in messages.
 
     Raises:
-        InputError: With the key ``law.<field>``.
+        InputError: With the key ``<kind>.<field>``.
     """
     for key in (*positive, *not_negative):
-        value = getattr(law, key)
+        value = getattr(record, key)
         if value is None:
             continue
         parts = value if isinstance(value, (tuple, list)) else (value,)
@@ -122,9 +126,9 @@ def check_parameters(
             number = isinstance(part, (int, float, np.number)) and not isinstance(part, bool)
             least_is_zero = key in not_negative
             if not (number and np.isfinite(part) and (part > 0 or (least_is_zero and part == 0))):
-                raise InputError(f"law.{key}", value, allowed)
+                raise InputError(f"{kind}.{key}", value, allowed)
         floats = tuple(float(part) for part in parts)
-        object.__setattr__(law, key, floats if isinstance(value, (tuple, list)) else floats[0])
+        object.__setattr__(record, key, floats if isinstance(value, (tuple, list)) else floats[0])
 
 
 def command_size(array: CmgArray, obs: Observation) -> Any:

@@ -216,7 +216,9 @@ def test_vectors_are_shown_without_rounding_noise():
     assert screen.vector([float("nan"), 1.0]) == "nan 1"
 
 
-@pytest.mark.parametrize("kind", ["laws", "layouts", "metrics", "papers", "scenarios"])
+@pytest.mark.parametrize(
+    "kind", ["laws", "layouts", "controllers", "metrics", "papers", "scenarios"]
+)
 def test_lists(kind, cli):
     status, out, err = cli("list", kind)
     assert (status, err) == (0, "")

@@ -65,6 +65,57 @@ def test_varied_cases_equal_their_single_runs():
         )
 
 
+SLEW = {"simulation.duration_s": 0.4, "simulation.dt_s": 0.02}
+
+
+def test_attitudes_are_compared_by_what_a_slew_is_judged_by(cli, tmp_path):
+    settings = [part for key, value in SLEW.items() for part in ("--set", f"{key}={value}")]
+    status, out, err = cli("compare", "attitude-slew", *settings, "--laws", "gsr", "--out", "c")
+    assert (status, err) == (0, "")
+    words = " ".join(out.split())
+    for title in ("Settling", "pointing", "motor", "saturated", "sigma_min", "travel", "Required"):
+        assert title in words
+    assert "Off-axis" not in words
+    assert words.count("not settled") == 2
+    found = json.loads((tmp_path / "c" / "compare.json").read_text())
+    assert found["cases"][0]["settling_time_s"] is None
+    judged = found["cases"][0]["requirements"]
+    assert {*judged[0]} == {"name", "limit", "value", "margin", "passed"}
+    kept = sum(one["passed"] for one in judged)
+    assert f"{kept}/{len(judged)}" in words
+
+
+def test_varied_attitudes_are_tables_of_their_own_metrics(cli):
+    settings = [part for key, value in SLEW.items() for part in ("--set", f"{key}={value}")]
+    vary = "spacecraft.inertia_kg_m2=[10, 12, 8],[11, 12, 8]"
+    status, out, err = cli("compare", "attitude-slew", *settings, "--laws", "sr", "--vary", vary)
+    assert (status, err) == (0, "")
+    words = " ".join(out.split())
+    assert "settling time [s]" in words and "final pointing error [deg]" in words
+
+
+@pytest.mark.slow
+def test_varied_attitudes_equal_their_single_runs():
+    comparison = compare(short("attitude-slew"), ["sr"], parse("array.skew_deg=50:60:10"))
+    for case in comparison.cases:
+        one = compare(short("attitude-slew", **{"array.skew_deg": case.value}), ["sr"])
+        single = next(c for c in one.cases if c.label == case.label)
+        for key in ("final_pointing_error_deg", "max_motor_torque_Nm"):
+            assert case.metrics[key] == pytest.approx(single.metrics[key], rel=1e-9)
+        assert case.summary["final_q_BN"] == pytest.approx(single.summary["final_q_BN"], abs=1e-12)
+        assert case.trajectory.q_BN == pytest.approx(single.trajectory.q_BN, abs=1e-12)
+        judged = [[one["passed"] for one in c.summary["requirements"]] for c in (case, single)]
+        assert judged[0] == judged[1] and len(judged[0]) == 3
+
+
+def test_run_shows_what_a_slew_is_judged_by(cli):
+    settings = [part for key, value in SLEW.items() for part in ("--set", f"{key}={value}")]
+    status, out, err = cli("run", "attitude-slew", *settings)
+    assert (status, err) == (0, "")
+    for words in ("Settling time", "not settled", "Peak motor torque", "passed, failed: "):
+        assert words in out
+
+
 def test_vary_reads_ranges_and_lists():
     assert parse("a.b=40:60:1").values == tuple(range(40, 61))
     assert parse("a.b=1:0:-0.25").values == (1, 0.75, 0.5, 0.25, 0)

@@ -8,34 +8,63 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import nullmotion as nm
 from nullmotion import metrics
 from nullmotion.compile import compile_function
 from nullmotion.metrics import Sample
+from nullmotion.sim import Setup, Trajectory, run
+from nullmotion.spacecraft import Servo, Spacecraft, controllers
 
 NAMES = [
     "along_axis_torque_fraction",
+    "body_rate_deg_s",
     "condition_number",
+    "gimbal_travel_rad",
     "momentum_Nms",
     "momentum_error_Nms",
     "momentum_reserve_Nms",
     "momentum_state",
+    "motor_power_W",
+    "motor_torque_Nm",
     "off_axis_impulse_Nms",
     "off_axis_torque_fraction",
     "peak_rate_rad_s",
+    "pointing_error_deg",
+    "rate_saturated_s",
     "rate_step_rad_s",
     "residual_momentum",
+    "settling_time_s",
     "sigma_min",
     "sqrt_det_AAT",
 ]
+UNITS = {  # the first that fits
+    "_Nms": "N m s",
+    "_rad_s": "rad/s",
+    "_deg_s": "deg/s",
+    "_Nm": "N m",
+    "_rad": "rad",
+    "_deg": "deg",
+    "_W": "W",
+    "_s": "s",
+    "": "1",
+}
 ARRAYS: dict[str, Callable[[], nm.CmgArray]] = {
-    "pyramid": lambda: nm.layouts.pyramid(h0=2.0),
-    "unequal": lambda: nm.layouts.roof6(h0=[1.0, 2.0, 0.5, 3.0, 1.5, 0.7]),
+    "pyramid": lambda: nm.layouts.pyramid(h0=2.0, rate_limit=1.2),
+    "unequal": lambda: nm.layouts.roof6(
+        h0=[1.0, 2.0, 0.5, 3.0, 1.5, 0.7], rate_limit=[1.0, 2.0, 3.0, 2.5, 1.5, 2.0]
+    ),
     "frozen": lambda: nm.layouts.orthogonal_pairs(h0=1.5).without(1, frozen_at=0.4),
     "planar": lambda: nm.layouts.planar(n=5, h0=0.5),
     "triangle": lambda: nm.layouts.triangle(),
 }
+
+
+def rotated(angle: float, axis: Any) -> np.ndarray:
+    """Return the quaternion, scalar first, of a rotation by 0 to pi."""
+    x, y, z, w = Rotation.from_rotvec(angle * np.array(axis) / np.linalg.norm(axis)).as_quat()
+    return np.array([w, x, y, z]) * (1.0 if w >= 0 else -1.0)
 
 
 def sample(array: nm.CmgArray, seed: int, **fixed: Any) -> Sample:
@@ -50,6 +79,11 @@ def sample(array: nm.CmgArray, seed: int, **fixed: Any) -> Sample:
         "previous_rates": rng.normal(size=n),
         "momentum_wanted": rng.normal(size=m),
         "impulse": rng.normal(size=m),
+        "asked": rng.normal(size=n),
+        "motor_torque": rng.normal(size=n),
+        "omega_BN_B": rng.normal(size=3),
+        "q_BR": rotated(rng.uniform(0, np.pi), rng.normal(size=3)),
+        "dt": 0.02,
     }
     return Sample(array, **(values | fixed))
 
@@ -84,18 +118,26 @@ def expected(x: Sample) -> dict[str, float]:
     theta = np.arccos(np.clip(h @ e3, -1, 1))
     alpha = np.arccos(np.abs(np.clip(array.gimbal_axes @ e3, -1, 1)))
     residual = float(np.sum(theta - (np.pi / 2 - alpha)) / np.pi)
+    turn = Rotation.from_quat(np.roll(x.q_BR, -1)).magnitude()
     return {
         "along_axis_torque_fraction": abs(torque @ e - command) / command,
+        "body_rate_deg_s": np.linalg.norm(x.omega_BN_B) * 180.0 / np.pi,
         "condition_number": sigma[0] / sigma[-1],
+        "gimbal_travel_rad": np.linalg.norm(x.rates, 1),
         "momentum_Nms": np.linalg.norm(momentum),
         "momentum_error_Nms": np.linalg.norm(momentum - x.momentum_wanted),
         "momentum_reserve_Nms": np.linalg.norm(basis @ saturated) - np.linalg.norm(momentum),
         "momentum_state": residual + sigma[-1],
+        "motor_power_W": sum(abs(t * r) for t, r in zip(x.motor_torque, x.rates, strict=True)),
+        "motor_torque_Nm": np.linalg.norm(x.motor_torque, np.inf),
         "off_axis_impulse_Nms": across(x.impulse),
         "off_axis_torque_fraction": across(torque) / command,
         "peak_rate_rad_s": np.abs(x.rates).max(),
+        "pointing_error_deg": turn * 180.0 / np.pi,
+        "rate_saturated_s": float((np.abs(x.asked) > array.rate_limit).any()),
         "rate_step_rad_s": np.abs(x.rates - x.previous_rates).max(),
         "residual_momentum": residual,
+        "settling_time_s": 0.52 if turn > np.radians(0.1) else 0.0,
         "sigma_min": sigma[-1],
         "sqrt_det_AAT": np.sqrt(np.linalg.det(jacobian @ jacobian.T)) / h0.mean() ** len(e),
     }
@@ -107,6 +149,7 @@ def evaluated(x: Sample) -> dict[str, Any]:
 
 
 FIELDS = ("delta", "hdot", "rates", "previous_rates", "momentum_wanted", "impulse")
+FIELDS += ("asked", "motor_torque", "omega_BN_B", "q_BR")
 
 
 @cache
@@ -115,11 +158,11 @@ def compiled(key: str) -> Any:
     array = ARRAYS[key]()
 
     def together(*values: Any) -> Any:
-        x = Sample(array=array, t=0.5, **dict(zip(FIELDS, values, strict=True)))
+        x = Sample(array=array, t=0.5, dt=0.02, **dict(zip(FIELDS, values, strict=True)))
         return tuple(evaluated(x).values())
 
     n, m = array.n, array.m
-    shapes = {"hdot": m, "momentum_wanted": m, "impulse": m}
+    shapes = {"hdot": m, "momentum_wanted": m, "impulse": m, "omega_BN_B": 3, "q_BR": 4}
     return compile_function(together, *[np.zeros(shapes.get(f, n)) for f in FIELDS])
 
 
@@ -135,8 +178,7 @@ def test_the_catalogue() -> None:
     for name in metrics.names():
         cls = metrics.get(name)
         assert cls.title and cls.reductions and cls.__doc__
-        suffixes = [("_Nms", "N m s"), ("_rad_s", "rad/s"), ("_Nm", "N m"), ("", "1")]
-        assert cls.unit == next(unit for suffix, unit in suffixes if name.endswith(suffix))
+        assert cls.unit == next(unit for suffix, unit in UNITS.items() if name.endswith(suffix))
 
 
 @pytest.mark.parametrize("key", ARRAYS)
@@ -166,6 +208,8 @@ def test_degenerate_samples_are_finite(key: str) -> None:
         sample(array, 0, hdot=axis, delta=np.zeros(n)),
         sample(array, 0, hdot=1e-9 * along),
         sample(array, 0, hdot=1e9 * along),
+        sample(array, 0, q_BR=np.array([1.0, 0, 0, 0]), omega_BN_B=np.zeros(3)),
+        sample(array, 0, q_BR=np.array([0.0, 0, -1.0, 0]), motor_torque=np.zeros(n)),
     ]
     for x, kernel in zip(samples, through_the_kernel(key, samples), strict=True):
         values = evaluated(x)
@@ -209,3 +253,76 @@ def test_the_pseudo_inverse_has_no_torque_error() -> None:
         values = evaluated(sample(array, 4, delta=delta, hdot=hdot, rates=factor * rates))
         assert values["along_axis_torque_fraction"] == pytest.approx(error, abs=1e-14)
         assert values["off_axis_torque_fraction"] == pytest.approx(0, abs=1e-14)
+
+
+def test_a_half_turn_is_as_far_as_it_gets() -> None:
+    for q, angle in (([0.0, 1, 0, 0], 180.0), ([-1.0, 0, 0, 0], 0.0), ([0.6, 0, 0.8, 0], None)):
+        x = sample(nm.layouts.pyramid(), 5, q_BR=np.array(q))
+        expected_angle = 2.0 * np.degrees(np.arccos(0.6)) if angle is None else angle
+        value = metrics.get("pointing_error_deg")().of(x)
+        assert value == pytest.approx(expected_angle, abs=1e-13)
+
+
+@pytest.mark.parametrize(("off", "time"), [(0.099, 0.0), (0.101, 0.52)])
+def test_settled_within_the_tolerance(off: float, time: float) -> None:
+    x = sample(nm.layouts.pyramid(), 6, q_BR=rotated(np.radians(off), [1.0, 2.0, 3.0]))
+    assert metrics.get("settling_time_s")().of(x) == pytest.approx(time, abs=1e-15)
+    loose = metrics.get("settling_time_s")(tolerance=np.radians(1.0))
+    assert loose.of(x) == 0.0
+
+
+def slew(steps: int, **more: Any) -> Trajectory:
+    """Return a slew of 40 deg with every metric that there is."""
+    array, law = nm.layouts.pyramid(rate_limit=0.6), nm.laws.create("sr")
+    target = rotated(np.radians(40.0), [2.0, -1.0, 2.0])
+    base = {
+        "dt": 0.01,
+        "steps": steps,
+        "spacecraft": Spacecraft([12.0, 9.0, 14.0]),
+        "controller": controllers.create("quaternion-feedback", kp=4.0, kw=12.0),
+        "target": target,
+        "servo": Servo(time_constant=0.05, inertia=0.05),
+        "metrics": tuple(metrics.get(name)() for name in metrics.applicable(True)),
+    }
+    return run(Setup(array, law, np.zeros(4), np.zeros(3), **{**base, **more}))
+
+
+@pytest.mark.parametrize("servo", [None, Servo(time_constant=0.05, inertia=0.05)])
+def test_metrics_of_a_slew_are_those_of_its_history(servo: Any) -> None:
+    result = slew(4500, servo=servo)
+    m, n = result.metrics, 4500
+    torque, rates = result.motor_torque[:n], result.rates[:n]
+    error = np.degrees(result.pointing_error)
+    body = np.degrees(np.linalg.norm(result.omega_BN_B, axis=1))
+    power = np.abs(torque * rates).sum(axis=1)
+    saturated = (np.abs(result.rates_asked[:n]) > 0.6).any(axis=1).sum()
+    truth = {
+        "final_pointing_error_deg": error[-1],
+        "max_pointing_error_deg": error.max(),
+        "settling_time_s": result.t[np.flatnonzero(error > 0.1).max() + 1],
+        "max_motor_torque_Nm": np.abs(torque).max(),
+        "max_motor_power_W": power.max(),
+        "mean_motor_power_W": power.mean(),
+        "gimbal_travel_rad": np.abs(np.diff(result.delta, axis=0)).sum(),
+        "rate_saturated_s": 0.01 * saturated,
+        "max_body_rate_deg_s": body.max(),
+        "final_body_rate_deg_s": body[-1],
+    }
+    for name, value in truth.items():
+        assert m[name] == pytest.approx(value, rel=1e-9, abs=1e-11), name
+    assert 20 < truth["settling_time_s"] < 40 and saturated > 20
+    assert np.abs(np.ptp(result.delta, axis=0)).sum() < truth["gimbal_travel_rad"]
+
+
+def test_torque_of_ideal_motors() -> None:
+    """They work against omega . c alone: at most h0 times the body rate."""
+    result = slew(1000, servo=None)
+    body = np.linalg.norm(result.omega_BN_B, axis=1)[:1000]
+    assert result.metrics["max_motor_torque_Nm"] <= body.max() * 1.0
+    assert result.metrics["max_motor_torque_Nm"] > 0.3 * body.max()
+
+
+def test_a_slew_that_does_not_settle_has_no_settling_time() -> None:
+    assert np.isnan(slew(300).metrics["settling_time_s"])
+    there = rotated(np.radians(0.05), [1.0, 0.0, 0.0])
+    assert slew(300, target=there).metrics["settling_time_s"] == 0.0

@@ -4,18 +4,29 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import nullmotion as nm
+from nullmotion import rotation
 from nullmotion.errors import InputError
-from nullmotion.plot import compare_figure, palette, panels, run_figure
+from nullmotion.plot import attitude, compare_figure, palette, panels, run_figure
 from nullmotion.plot.draw import sheet
+from nullmotion.plot.events import marks as events_of
+from nullmotion.plot.events import told
 from nullmotion.plot.overlays import overlays
-from nullmotion.plot.quantities import axis_names, steady_direction, stuck_since, torque_fractions
+from nullmotion.plot.quantities import (
+    axis_names,
+    sigma_min_turning,
+    steady_direction,
+    stuck_since,
+    torque_fractions,
+)
 from nullmotion.plot.varied import varied_panels
+from nullmotion.spacecraft import Disturbance, Event
 
 STARTS = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}
 
@@ -182,6 +193,122 @@ def test_every_slot_is_seen_on_white_and_told_apart():
         assert 1.05 / (luminance + 0.05) >= 3  # what WCAG asks of graphics
     pairs = {(palette.colour(i), palette.dash(i)) for i in range(35)}
     assert len(pairs) == 35
+
+
+@pytest.fixture(scope="module")
+def turned(slew):
+    return slew(steps=100, events=(Event("stuck", 2, 3.0, detected_after=0.5),))
+
+
+def test_a_figure_of_an_attitude(tmp_path, turned):
+    made = panels.figure_panels(turned)
+    assert [p.key for p in made] == [
+        "pointing_error",
+        "attitude",
+        "body_rate",
+        "torque",
+        "rates",
+        "angles",
+        "measures",
+        "motor_torque",
+    ]
+    assert all("[" in p.y_title and p.y_title.endswith("]") for p in made)
+    assert run_figure(turned, tmp_path / "run.png").read_bytes().startswith(STARTS[".png"])
+    axes = sheet(made).axes[0]
+    assert axes.get_yscale() == "log"
+    assert [t.get_text() for t in axes.texts] == ["tolerance 0.1 deg", "CMG 3 stuck, found"]
+
+
+def test_charts_of_an_attitude_show_the_run(turned):
+    made = {p.key: p for p in panels.run_panels(turned)}
+    np.testing.assert_allclose(
+        made["pointing_error"].curves[0].y, np.degrees(turned.pointing_error)
+    )
+    asked = {c.label: c.y for c in made["attitude"].curves}
+    np.testing.assert_allclose(asked["roll asked"], 30.0)
+    np.testing.assert_allclose(asked["roll"][0], 0.0, atol=1e-9)
+    power = np.abs(turned.motor_torque * turned.rates).sum(axis=1)
+    np.testing.assert_array_equal(made["motor_power"].curves[0].y, power)
+    assert "inertial_momentum" not in made  # nothing from outside changes it
+
+
+def test_momentum_in_the_inertial_frame_is_drawn_when_a_torque_changes_it(slew):
+    run = slew(steps=20, disturbance=Disturbance(constant=np.array([0.0, 0.0, 0.01])))
+    panel = next(p for p in panels.run_panels(run) if p.key == "inertial_momentum")
+    np.testing.assert_allclose(panel.curves[2].y[-1], 0.01, rtol=1e-3)  # 0.01 N m for 1 s
+
+
+def test_sigma_min_leaves_stuck_cmgs_out(turned):
+    least = sigma_min_turning(turned)
+    before = turned.t < 3.0
+    np.testing.assert_allclose(least[before], turned.measures["sigma_min"][before], rtol=1e-6)
+    array, k = turned.setup.array, -1
+    left = np.delete(array.jacobian(turned.delta[k]), 2, axis=1) / array.mean_momentum
+    assert least[k] == pytest.approx(np.linalg.svd(left, compute_uv=False)[-1], rel=1e-6)
+    assert sigma_min_turning(turning()) is None
+
+
+def test_angles_have_a_gap_where_they_turn_over(turned):
+    yaw = np.radians([178.0, 179.0, -179.0, -178.0])
+    q = np.array([rotation.from_euler_321((a, 0.0, 0.0)) for a in yaw])
+    run = replace(turned, t=turned.t[:4], q_BN=q, reference=q)
+    drawn = attitude.euler_angles(run).curves[0].y
+    np.testing.assert_allclose(drawn, [178.0, 179.0, np.nan, -178.0])
+
+
+def test_errors_near_zero_do_not_stretch_the_axis(turned):
+    run = replace(turned, reference=turned.q_BN)
+    panel = attitude.pointing_error(run)
+    assert panel.curves[0].y.min() == attitude.LEAST_DEG and "drawn there" in panel.note
+
+
+def test_names_of_marks_never_overlap(turned):
+    def names(*events):
+        run = replace(turned, setup=replace(turned.setup, events=events))
+        return [(m.at, m.label, m.side) for m in events_of(run) if m.label]
+
+    assert names(Event("stuck", 0, 1.0, detected_after=np.inf)) == [(1.0, "CMG 1 stuck", "right")]
+    assert names(Event("slow", 0, 9.0, rate_limit=1.0)) == []
+    assert names(Event("stuck", 0, 0.5, detected_after=4.0)) == [
+        (0.5, "CMG 1 stuck", "right"),
+        (4.5, "found", "left"),
+    ]
+    both = Event("stuck", 0, 1.0), Event("spin-down", 1, 4.0, detected_after=0.2)
+    assert names(*both) == [(1.0, "CMG 1 stuck, CMG 2 spinning down, CMG 2 found", "right")]
+
+
+def test_faults_in_words(turned):
+    assert told(turned) == "CMG 3 stuck at t = 3 s, found at 3.5 s; 3 CMGs left"
+    slow = (Event("slow", 0, 1.0, rate_limit=1.0),)
+    assert told(replace(turned, setup=replace(turned.setup, events=slow))) == (
+        "CMG 1 slow at t = 1 s, known at once"
+    )
+    late = (Event("stuck", 0, 1.0, detected_after=99.0),)
+    assert "not found; 3 CMGs left" in told(
+        replace(turned, setup=replace(turned.setup, events=late))
+    )
+    assert told(turning()) == ""
+
+
+def test_overlays_of_attitudes(turned):
+    made = overlays([case("a", turned), case("b", None)])
+    assert [p.key for p in made] == [
+        "pointing_error",
+        "torque_missed",
+        "sigma_min",
+        "momentum",
+        "largest_rate",
+        "motor_torque",
+    ]
+    assert made[0].log and made[0].levels[0].value == pytest.approx(0.1)
+    assert all(len(p.marks) == 2 for p in made)
+
+
+def test_attitudes_over_a_varied_value(turned):
+    runs = [case("a", turned, v) for v in (1.0, 2.0)]
+    made = {p.key: p for p in varied_panels(SimpleNamespace(cases=runs, varied="k"))}
+    assert "varied_settling_time_s" not in made  # neither settled
+    assert made["varied_final_pointing_error_deg"].log
 
 
 def test_labels_stay_inside_the_sheet():

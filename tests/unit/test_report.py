@@ -6,6 +6,7 @@ import base64
 import json
 import subprocess
 import sys
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,12 +18,14 @@ import nullmotion as nm
 from nullmotion.campaign.cases import parameters_kind
 from nullmotion.errors import NullmotionError
 from nullmotion.report import compare_report, page, run_report
+from nullmotion.report.findings import findings
 from nullmotion.report.markup import Markup, tag
 from nullmotion.report.ranking import Column, best
 from nullmotion.report.results import KINDS
 from nullmotion.report.thin import thinned
 from nullmotion.report.verdict import verdict
-from nullmotion.report.wording import meaning, number, percent
+from nullmotion.report.wording import meaning, number, percent, quantity
+from nullmotion.spacecraft import Event, Servo
 
 EVIL = """<img src=x onerror="alert(1)"></script><script>alert('2')</script>&amp; $title"""
 
@@ -294,6 +297,128 @@ def test_a_comparison_where_nothing_ran_is_a_table(tmp_path):
     assert not any(name == "script" for name, _ in document.elements)
 
 
+REQUIREMENTS = [
+    {"name": "settling_time_s_below", "limit": 30.0, "value": 16.0, "margin": 14.0, "passed": True},
+    {
+        "name": "max_motor_torque_Nm_below",
+        "limit": 0.1,
+        "value": 0.2,
+        "margin": -0.1,
+        "passed": False,
+    },
+    {
+        "name": "final_pointing_error_deg_above",
+        "limit": 0.0,
+        "value": None,
+        "margin": None,
+        "passed": False,
+    },
+]
+
+
+@pytest.fixture(scope="module")
+def turned(slew):
+    return slew()
+
+
+@pytest.fixture(scope="module")
+def faulty(slew):
+    return slew(steps=100, events=(Event("stuck", 1, 1.0, detected_after=0.5),))
+
+
+def test_a_page_of_an_attitude_leads_with_the_pointing_error(tmp_path, turned):
+    document = read(run_report(turned, tmp_path / "run.html", "Slew", "", REQUIREMENTS))
+    figures = document.data()["figures"]
+    assert list(figures)[:4] == ["pointing_error", "attitude", "body_rate", "torque"]
+    assert {"rates", "angles", "measures", "momentum", "motor_torque", "motor_power"} <= {*figures}
+    assert not {"torque_error", "residual", "state"} & {*figures}
+    error = figures["pointing_error"]["layout"]
+    assert error["yaxis"]["type"] == "log"
+    assert error["shapes"][0]["y0"] == pytest.approx(0.1)
+    assert error["annotations"][0]["y"] == pytest.approx(-1)
+    names = [trace["name"] for trace in figures["attitude"]["traces"]]
+    assert names == ["yaw", "yaw asked", "pitch", "pitch asked", "roll", "roll asked"]
+    settled = number(turned.metrics["settling_time_s"])
+    for words in (
+        f"Settled within 0.1 deg in {settled} s",
+        "asked to turn by 30 deg, under quaternion feedback",
+        "No singular encounter",
+        "Requirements passed: 1/3",
+        "Peak body rate",
+        "Rate-saturated",
+    ):
+        assert words in document.text
+
+
+def test_requirements_are_told_by_sign_and_word(tmp_path, turned):
+    text = read(run_report(turned, tmp_path / "run.html", "Slew", "", REQUIREMENTS)).text
+    assert text.count("✓ passed") == 1 and text.count("✗ failed") == 2
+    assert "14 s (46.7 %)" in text and "−0.1 N m (−100 %)" in text
+    assert "requirement" not in read(run_report(turned, tmp_path / "run.html", "Slew")).text.lower()
+
+
+def test_a_stuck_cmg_is_said_and_marked(tmp_path, faulty):
+    document = read(run_report(faulty, tmp_path / "run.html", "Fault"))
+    left = number(np.degrees(faulty.pointing_error[-1]))
+    assert (
+        "CMG 2 stuck at t = 1 s, found at 1.5 s; 3 CMGs left; "
+        f"not settled within 0.1 deg: {left} deg left at the end"
+    ) in document.text
+    assert "sigma_min without stuck CMGs" in document.text
+    for figure in document.data()["figures"].values():
+        upright = [s["x0"] for s in figure["layout"]["shapes"] if s.get("yref") == "paper"]
+        assert upright == [1.0, 1.5]
+        above = [a["text"] for a in figure["layout"]["annotations"] if a.get("yref") == "paper"]
+        assert above == ["CMG 2 stuck, found"]
+
+
+def test_verdicts_on_an_attitude(turned, faulty):
+    assert verdict(turned).tone == "done" and not verdict(faulty).useful
+    metrics = {**faulty.metrics, "settling_time_s": np.nan, "final_pointing_error_deg": 3.2}
+    stopped = replace(faulty, metrics=metrics, stopped_at_s=5.0, stop_reason="sigma_min below 0.1")
+    assert verdict(stopped).words == (
+        "Stopped at 5 s: sigma min below 0.1; not settled within 0.1 deg: 3.2 deg left at the end"
+    )
+    held = replace(turned, metrics={**turned.metrics, "settling_time_s": 0.0})
+    assert verdict(held).words == "Always within 0.1 deg"
+    unmeasured = replace(turned, metrics={}, setup=replace(turned.setup, metrics=()))
+    assert verdict(unmeasured).words.startswith("Ran to the end (20 s); 0.01")
+    broken = replace(turned, q_BN=np.where(turned.t[:, None] > 10, np.nan, turned.q_BN))
+    assert verdict(broken).words == "Failed: not a number from 10.05 s on"
+
+
+def test_an_attitude_that_broke_is_shown(tmp_path, faulty):
+    with np.errstate(all="ignore"):
+        lost = np.where(faulty.t[:, None] > 2, np.nan, 1.0)
+        names = ("q_BN", "omega_BN_B", "delta", "rates", "rates_asked", "motor_torque", "hdot")
+        broken = replace(faulty, **{name: lost * getattr(faulty, name) for name in names})
+        document = read(run_report(broken, tmp_path / "broken.html", "Broken"))
+    assert "not a number from 2.05 s on" in document.text
+
+
+def test_what_saturated_is_said(slew):
+    run = slew(steps=40, array=nm.layouts.pyramid(rate_limit=0.02))
+    said = findings(run)
+    assert any(s.startswith("The law asked for more than the rate limit for") for s in said)
+    strained = replace(run, setup=replace(run.setup, servo=Servo(inertia=1e-3, torque_limit=1e-9)))
+    assert any(
+        s.startswith("A gimbal motor gave all of its torque for 2 s") for s in findings(strained)
+    )
+
+
+def test_a_comparison_of_attitudes_has_its_own_columns(tmp_path, turned, faulty):
+    cases = [case("good", turned), case("bad", faulty), case("none", None, "needs more")]
+    for one, results in zip(cases, (REQUIREMENTS[:1], REQUIREMENTS[1:], ()), strict=True):
+        one.summary = {"requirements": list(results)}
+    comparison = SimpleNamespace(cases=tuple(cases), varied=None)
+    document = read(compare_report(comparison, tmp_path / "c.html", "C"))
+    for words in ("1 settled, 1 not settled, 1 could not run", "Settling time [s]", "✓ 16 s"):
+        assert words in document.text
+    assert "Off-axis torque" not in document.text
+    assert "counts a stuck CMG as if it turned" in document.text
+    assert list(document.data()["figures"])[:2] == ["pointing_error", "torque_missed"]
+
+
 def test_best_values_are_those_of_cases_that_did_their_job():
     low, high = Column("x", "x", "low"), Column("x", "x", "high")
     assert best(low, [3.0, 1.0, 2.0], [True, False, True]) == [False, False, True]
@@ -335,6 +460,9 @@ def test_meaning_of_a_key():
     assert meaning("min_sigma_min").words == "least singular value, least over the run"
     assert meaning("max_new_thing_rad_s").unit == "rad/s"
     assert meaning("anything").words == "anything"
+    assert meaning("gimbal_travel_rad")[:2] == ("gimbal travel", "rad")
+    assert quantity(np.nan, "s", "settling_time_s") == ("not settled", "")
+    assert quantity(2.0, "s", "settling_time_s") == ("2", "s")
 
 
 def test_markup_escapes_what_is_not_markup():

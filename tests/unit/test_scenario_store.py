@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 import nullmotion as nm
+from nullmotion import rotation
 from nullmotion.errors import InputError
-from nullmotion.scenario import files, load_scenario, rerun, store
+from nullmotion.scenario import files, load_scenario, rerun, store, variables
 
 KEYS = {
     "stopped_at_s", "stop_reason", "final_momentum", "min_sigma_min",
@@ -77,6 +78,47 @@ def test_xarray_has_units(flown):
     assert dataset["momentum"].attrs["units"] == "N m s"
     assert dataset.sizes["cmg"] == 4
     assert "delta_dot" in dataset.attrs["conventions"]
+
+
+@pytest.fixture(scope="module")
+def turned():
+    """A slew, and its run."""
+    scenario = load_scenario("attitude-slew", {"simulation.duration_s": 1.0})
+    return scenario, nm.simulate(scenario)
+
+
+def test_an_attitude_file_tells_what_the_body_did(turned, tmp_path):
+    scenario, run = turned
+    store.write(run, scenario, tmp_path / "r", csv=True)
+    with netCDF4.Dataset(tmp_path / "r" / "trajectory.nc") as file:
+        assert all(v.units and v.long_name for v in file.variables.values())
+        assert file["q_BN"].dimensions == ("time", "quaternion")
+        assert file["omega_BN_B"].units == "rad s-1"
+        assert file["motor_torque"].units == "N m"
+        assert np.array_equal(file["q_BN"][:], run.q_BN)
+        assert np.array_equal(file["inertial_momentum"][:], run.inertial_momentum)
+        assert "reference^-1 * q_BN" in file.conventions
+        for angle, row in zip(file["euler_321"][:].data, run.q_BN, strict=True):
+            again = rotation.from_euler_321(angle)
+            assert np.abs(np.abs(again @ row) - 1.0) < 1e-14
+    table = np.genfromtxt(tmp_path / "r" / "trajectory.csv", delimiter=",", names=True)
+    assert np.array_equal(table["q_BN_2"], run.q_BN[:, 2])
+    assert np.array_equal(table["omega_BN_B_z_rad_s"], run.omega_BN_B[:, 2])
+    assert np.array_equal(table["motor_torque_3_Nm"], run.motor_torque[:, 3], equal_nan=True)
+    assert np.array_equal(table["pointing_error_rad"], run.pointing_error)
+    assert {"euler_321_yaw_rad", "inertial_momentum_x_Nms", "speed_0_rad_s"} <= {*table.dtype.names}
+
+
+def test_an_attitude_repeats_bit_for_bit(turned, tmp_path):
+    scenario, run = turned
+    store.write(run, scenario, tmp_path)
+    stored = rerun.read(tmp_path)
+    assert rerun.verdict(stored, nm.simulate(stored.scenario())) == "identical, bit for bit"
+
+
+def test_what_only_a_spacecraft_has_is_left_out_without_one(flown):
+    names = {variable.name for variable in variables.variables(flown[1])}
+    assert not {"q_BN", "omega_BN_B", "reference", "euler_321", "motor_torque", "speed"} & names
 
 
 def test_what_is_no_stored_run_is_refused(tmp_path):

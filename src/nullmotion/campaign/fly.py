@@ -7,11 +7,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from nullmotion import rotation
 from nullmotion.errors import TraceError
-from nullmotion.scenario.batch import groups
+from nullmotion.scenario.batch import compiled, groups
 from nullmotion.sim.batch import BatchResult, run_batch
 from nullmotion.sim.run import run
 from nullmotion.sim.setup import Setup
+from nullmotion.sim.state import Record
 from nullmotion.sim.trajectory import Trajectory
 
 Progress = Callable[[float], None]
@@ -56,7 +58,7 @@ def _share(progress: Progress | None, before: int, count: int, total: int) -> Pr
 
 
 def _group(setups: Sequence[Setup], every: int, progress: Progress | None) -> list[Flown]:
-    if len(setups) == 1 or not setups[0].law.traceable:
+    if len(setups) == 1 or not compiled(setups[0]):
         return one_by_one(setups, progress)
     try:
         result = run_batch(setups[0], setups=setups, history=every, progress=progress)
@@ -71,20 +73,24 @@ def _single(setup: Setup, result: BatchResult, i: int, every: int) -> Flown:
     stopped = result.stopped_at_s[i]
     taken = setup.steps if np.isnan(stopped) else round(stopped / setup.dt)
     kept = taken // every + 1
-    delta, rates, asked, hdot, impulse, wanted = (
-        np.array(column[i, :kept]) for column in result.history
-    )
+    cut = Record(*(np.array(column[i, :kept]) for column in result.history))
     if taken % every == 0:
-        rates[-1], asked[-1] = np.nan, np.nan
+        cut.rates[-1], cut.asked[-1], cut.motor_torque[-1] = np.nan, np.nan, np.nan
+    body = setup.spacecraft is not None
     trajectory = Trajectory(
         setup=setup,
         t=np.arange(kept) * (setup.dt * every),
-        delta=delta,
-        rates=rates,
-        rates_asked=asked,
-        hdot=hdot,
-        momentum_wanted=wanted,
-        impulse=impulse,
+        delta=cut.delta,
+        rates=cut.rates,
+        rates_asked=cut.asked,
+        hdot=cut.hdot,
+        momentum_wanted=cut.wanted,
+        impulse=cut.impulse,
+        q_BN=cut.q_BN if body else None,
+        omega_BN_B=cut.omega_BN_B if body else None,
+        reference=cut.reference if body else None,
+        speed=cut.speed,
+        motor_torque=cut.motor_torque,
         metrics={name: float(values[i]) for name, values in result.metrics.items()},
         stopped_at_s=None if np.isnan(stopped) else float(stopped),
         stop_reason=result.stop_reason[i],
@@ -98,4 +104,11 @@ def _single(setup: Setup, result: BatchResult, i: int, every: int) -> Flown:
         "final_momentum": result.final_momentum[i].tolist(),
         "final_gimbal_deg": np.degrees(result.final_gimbal_rad[i]).tolist(),
     }
+    if result.final_q_BN is not None and result.final_omega_BN_B is not None:
+        q = result.final_q_BN[i]
+        exact |= {
+            "final_q_BN": q.tolist(),
+            "final_euler_321_deg": np.degrees(rotation.euler_321(q)).tolist(),
+            "final_omega_BN_B_rad_s": result.final_omega_BN_B[i].tolist(),
+        }
     return Flown(trajectory, trajectory.summary() | exact)

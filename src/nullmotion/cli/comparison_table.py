@@ -17,9 +17,22 @@ _COLUMNS = (
     ("Least sigma_min", "min_sigma_min", screen.number),
     ("Reserve [N m s]", "final_momentum_reserve_Nms", screen.number),
 )
+_ATTITUDE = (
+    ("Settling time [s]", "settling_time_s", screen.number),
+    ("Final pointing error [deg]", "final_pointing_error_deg", screen.number),
+    ("Peak motor torque [N m]", "max_motor_torque_Nm", screen.number),
+    ("Rates saturated [s]", "rate_saturated_s", screen.number),
+    ("Least sigma_min", "min_sigma_min", screen.number),
+    ("Gimbal travel [rad]", "gimbal_travel_rad", screen.number),
+)
 _VARIED = (
     ("time to stop [s]", "stopped_at_s", screen.number),
     ("off-axis torque, peak [%]", "max_off_axis_torque_fraction", screen.percent),
+    ("least sigma_min", "min_sigma_min", screen.number),
+)
+_VARIED_ATTITUDE = (
+    ("settling time [s]", "settling_time_s", screen.settling),
+    ("final pointing error [deg]", "final_pointing_error_deg", screen.number),
     ("least sigma_min", "min_sigma_min", screen.number),
 )
 _MOST_VALUES = 12  # of a varied key in a table on the screen
@@ -29,19 +42,29 @@ def tables(comparison: Comparison) -> list[Any]:
     """Return the tables of a comparison: one, or one a metric over the varied values."""
     if comparison.varied is None:
         return [_single(comparison)]
-    return [_varied(comparison, *column) for column in _VARIED]
+    chosen = _VARIED_ATTITUDE if _turns(comparison) else _VARIED
+    return [_varied(comparison, *column) for column in chosen]
+
+
+def _turns(comparison: Comparison) -> bool:
+    return comparison.scenario.mission.kind == "attitude"
 
 
 def _single(comparison: Comparison) -> Any:
-    head = (
-        "Case",
-        "Parameters",
-        "Result",
-        *(title for title, _, _ in _COLUMNS),
-        "Information used",
-    )
-    rows = [_row(case) for case in comparison.cases]
-    made = screen.table(comparison.title, head, rows, numeric=range(3, 3 + len(_COLUMNS)))
+    columns = _ATTITUDE if _turns(comparison) else _COLUMNS
+    required = comparison.scenario.requirements is not None
+    head = ["Case", "Parameters", "Result", *(title for title, _, _ in columns)]
+    rows = [_row(case, columns) for case in comparison.cases]
+    if required:
+        head.append("Required")
+        rows = [[*row, _passed(case)] for row, case in zip(rows, comparison.cases, strict=True)]
+    numeric = range(3, len(head))
+    head.append("Information used")
+    rows = [
+        [*row, ", ".join(case.information) or "-"]
+        for row, case in zip(rows, comparison.cases, strict=True)
+    ]
+    made = screen.table(comparison.title, head, rows, numeric=numeric)
     for column in made.columns[:3]:
         column.no_wrap = True
     made.caption, made.caption_justify = _caption(comparison), "left"
@@ -58,18 +81,20 @@ def _caption(comparison: Comparison) -> str:
     refused = [
         f"{c.label} could not run: {c.reason}." for c in comparison.cases if c.trajectory is None
     ]
-    return " ".join([f"{stops}sigma_min is that of A over the mean momentum.", *refused])
+    stuck = any(event.kind == "stuck" for event in comparison.scenario.events)
+    counted = " It counts a stuck CMG as if it turned." if stuck else ""
+    measure = f"{stops}sigma_min is that of A over the mean momentum.{counted}"
+    return " ".join([measure, *refused])
 
 
-def _row(case: Case) -> Sequence[str]:
-    numbers = [written(case.metrics.get(key)) for _, key, written in _COLUMNS]
-    return (
-        case.label,
-        case.parameters_kind,
-        result(case),
-        *numbers,
-        ", ".join(case.information) or "-",
-    )
+def _row(case: Case, columns: Sequence[Any]) -> list[str]:
+    numbers = [written(case.metrics.get(key)) for _, key, written in columns]
+    return [case.label, case.parameters_kind, result(case), *numbers]
+
+
+def _passed(case: Case) -> str:
+    results = case.summary.get("requirements", ())
+    return f"{sum(r['passed'] for r in results)}/{len(results)}" if results else "-"
 
 
 def result(case: Case) -> str:
@@ -79,9 +104,12 @@ def result(case: Case) -> str:
         return "could not run"
     from nullmotion.plot.quantities import stuck_since
 
-    since = stuck_since(run)  # type: ignore[arg-type]
     if "non-finite" in run.status:
         return "not finite"
+    if run.q_BN is not None and run.stopped_at_s is None:
+        settled = case.metrics.get("settling_time_s")
+        return screen.NOT_SETTLED if settled != settled else "settled"
+    since = None if run.q_BN is not None else stuck_since(run)  # type: ignore[arg-type]
     if since is not None:
         return f"stuck from {since:.3g} s"
     return (

@@ -10,6 +10,7 @@ from nullmotion import metrics as metric_package
 from nullmotion.array import layouts as layout_package
 from nullmotion.scenario.load import library_names, load_scenario
 from nullmotion.scenario.sections import file_key
+from nullmotion.spacecraft import controllers as controller_package
 
 LONG = ("parameters", "claims", "description", "aliases")  # in JSON only
 
@@ -44,6 +45,22 @@ def layouts() -> list[dict[str, Any]]:
             "description": _first_line(cls),
         }
         for cls in map(layout_package.get, layout_package.names())
+    ]
+
+
+def controllers() -> list[dict[str, Any]]:
+    """Return the attitude controllers."""
+    return [
+        {
+            "name": cls.name,
+            "full_name": cls.full_name,
+            "aliases": list(cls.aliases),
+            "citation": cls.citation,
+            "follows_profile": cls.follows_profile,
+            "parameters": _parameters(cls),
+            "description": _first_line(cls),
+        }
+        for cls in map(controller_package.get, controller_package.names())
     ]
 
 

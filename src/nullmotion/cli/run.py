@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -46,11 +47,12 @@ def write(
 ) -> None:
     """Write all files of the run, the report included."""
     from nullmotion.report.run import run_report
-    from nullmotion.scenario import store
+    from nullmotion.scenario import requirements, store
 
     def report(path: Path) -> Any:
         text = scenario.source.effective_text()
-        return run_report(trajectory, path, scenario.title, text)  # type: ignore[arg-type]
+        kept = requirements.evaluate(scenario, trajectory.summary())
+        return run_report(trajectory, path, scenario.title, text, kept)  # type: ignore[arg-type]
 
     store.write(trajectory, scenario, target, csv=csv, law_file=law_file, report=report)
 
@@ -58,15 +60,49 @@ def write(
 def show(trajectory: Trajectory, scenario: Scenario) -> None:
     """Print the run's key numbers."""
     found, stopped = trajectory.summary(), trajectory.stopped_at_s
+    of_its_kind = _momentum if trajectory.q_BN is None else _attitude
     rows = [
         ("Law", scenario.law.name),
         ("Stopped at", "-" if stopped is None else f"{stopped:.6g} s"),
         ("Stop reason", trajectory.stop_reason),
-        ("Final momentum", screen.vector(found["final_momentum"]) + " N m s"),
-        ("Least sigma_min", screen.number(found.get("min_sigma_min"))),
-        ("Off-axis torque, peak", screen.percent(found.get("max_off_axis_torque_fraction")) + " %"),
-        ("Largest rate step", screen.number(found.get("max_rate_step_rad_s")) + " rad/s"),
+        *of_its_kind(found),
+        *_requirements(scenario, found),
         ("Status", ", ".join(found["status"])),
         ("Backend", " ".join(filter(None, (trajectory.backend, trajectory.instruction_set)))),
     ]
     screen.console().print(screen.table(scenario.title, ("Quantity", "Value"), rows))
+
+
+def _momentum(found: Mapping[str, Any]) -> list[tuple[str, str]]:
+    number = screen.number
+    return [
+        ("Final momentum", screen.vector(found["final_momentum"]) + " N m s"),
+        ("Least sigma_min", number(found.get("min_sigma_min"))),
+        ("Off-axis torque, peak", screen.percent(found.get("max_off_axis_torque_fraction")) + " %"),
+        ("Largest rate step", number(found.get("max_rate_step_rad_s")) + " rad/s"),
+    ]
+
+
+def _attitude(found: Mapping[str, Any]) -> list[tuple[str, str]]:
+    number = screen.number
+    settled = screen.settling(found.get("settling_time_s"))
+    return [
+        ("Settling time", settled if settled == screen.NOT_SETTLED else f"{settled} s"),
+        ("Final pointing error", number(found.get("final_pointing_error_deg")) + " deg"),
+        ("Peak body rate", number(found.get("max_body_rate_deg_s")) + " deg/s"),
+        ("Peak motor torque", number(found.get("max_motor_torque_Nm")) + " N m"),
+        ("Rate-saturated", number(found.get("rate_saturated_s")) + " s"),
+        ("Least sigma_min", number(found.get("min_sigma_min"))),
+        ("Gimbal travel", number(found.get("gimbal_travel_rad")) + " rad"),
+    ]
+
+
+def _requirements(scenario: Scenario, found: Mapping[str, Any]) -> list[tuple[str, str]]:
+    from nullmotion.scenario import requirements
+
+    results = requirements.evaluate(scenario, found)
+    if not results:
+        return []
+    failed = [result["name"] for result in results if not result["passed"]]
+    words = f"{len(results) - len(failed)}/{len(results)} passed"
+    return [("Requirements", words + (f", failed: {', '.join(failed)}" if failed else ""))]

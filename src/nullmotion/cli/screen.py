@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
+NOT_SETTLED = "not settled"
 _SILENT = 2.0  # seconds of work before a progress bar appears
 _NOISE = 1e-9
 _ROUNDING = 1e-12  # of the largest component
@@ -31,7 +32,9 @@ def table(
 
     made = Table(title=Text(title), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
     for i, name in enumerate(columns):
-        made.add_column(name, justify="right" if i in numeric else "left", overflow="fold")
+        longest = max(map(len, name.split()), default=0)  # no word of a head is cut
+        side: Any = "right" if i in numeric else "left"
+        made.add_column(Text(name), justify=side, overflow="fold", min_width=longest)
     for row in rows:
         made.add_row(*(Text(cell) for cell in row))
     return made
@@ -77,6 +80,11 @@ def number(value: Any) -> str:
     if value is None or value != value:
         return "-"
     return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def settling(value: Any) -> str:
+    """Return a settling time; in words that there is none."""
+    return NOT_SETTLED if value is not None and value != value else number(value)
 
 
 def vector(values: Sequence[float]) -> str:

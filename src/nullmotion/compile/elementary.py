@@ -11,7 +11,9 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import wraps
+from typing import Any
 
 from nullmotion.compile.tape import (
     Symbol,
@@ -76,6 +78,21 @@ _RSQRT = (0.5, 0.375, 0.3125, 0.2734375)  # of (1 - e)**(-1/2)
 # fmt: on
 
 
+def _named(function: Callable[..., Symbol]) -> Callable[..., Symbol]:
+    """Let the tape remember of which arguments a node is this function."""
+
+    @wraps(function)
+    def named(*args: Any, **options: Any) -> Symbol:
+        result = function(*args, **options)
+        if isinstance(result, Symbol):
+            tape, reals = result.tape, [a for a in args if not isinstance(a, bool)]
+            ids = [a.node if isinstance(a, Symbol) else tape.constant(a) for a in reals]
+            tape.remember(function.__name__, tuple(ids), result.node)
+        return result
+
+    return named
+
+
 def _polynomial(x: Symbol, coefficients: Sequence[float]) -> Symbol:
     """Return sum c_j x**j by Horner's rule."""
     result: Symbol | float = coefficients[-1]
@@ -123,6 +140,7 @@ def _quadrant(x: Symbol) -> tuple[Symbol, Symbol, Symbol]:
     return biased, sine, cosine
 
 
+@_named
 def sin(x: Symbol) -> Symbol:
     """Return sin x for |x| <= 1e5 rad; error below 1.3 ulp.
 
@@ -132,6 +150,7 @@ def sin(x: Symbol) -> Symbol:
     return flip(select(raw_bit(b, 0), cosine, sine), b, 1)
 
 
+@_named
 def cos(x: Symbol) -> Symbol:
     """Return cos x for |x| <= 1e5 rad; error below 1.3 ulp.
 
@@ -141,6 +160,7 @@ def cos(x: Symbol) -> Symbol:
     return flip(select(raw_bit(b, 0), -sine, cosine), b, 1)
 
 
+@_named
 def rsqrt(x: Symbol, rough: bool = False) -> Symbol:
     """Return 1/sqrt(x); error below 1.2 ulp, or 4e-7 if rough.
 
@@ -156,6 +176,7 @@ def rsqrt(x: Symbol, rough: bool = False) -> Symbol:
     return y
 
 
+@_named
 def exp(x: Symbol) -> Symbol:
     """Return e**x for every x; error below 0.95 ulp.
 
@@ -170,6 +191,7 @@ def exp(x: Symbol) -> Symbol:
     return result * power_of_two(half) * power_of_two(k - half)
 
 
+@_named
 def log(x: Symbol) -> Symbol:
     """Return the natural logarithm; error below 0.75 ulp. -inf at 0, NaN below.
 
@@ -194,6 +216,7 @@ def log(x: Symbol) -> Symbol:
     return select(x > 0.0, result, select(equal(x, 0.0), -math.inf, math.nan))
 
 
+@_named
 def atan2(y: Symbol, x: Symbol) -> Symbol:
     """Return the angle of the point (x, y), C99's atan2; error below 0.90 ulp.
 
@@ -224,6 +247,7 @@ def atan2(y: Symbol, x: Symbol) -> Symbol:
     return copysign(fma(j, _PI_4[0], q + rest), y)
 
 
+@_named
 def acos(x: Symbol) -> Symbol:
     """Return the arc cosine; error below 0.85 ulp. NaN outside [-1, 1].
 

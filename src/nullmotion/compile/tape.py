@@ -38,10 +38,17 @@ class Node:
 
 @dataclass
 class Tape:
-    """A growing list of operations; every `Symbol` belongs to one."""
+    """A growing list of operations; every `Symbol` belongs to one.
+
+    Attributes:
+        nodes: The operations; operands come first.
+        guards: For each status flag, the conditions that must hold.
+        functions: For the result of an elementary function, its name and its arguments.
+    """
 
     nodes: list[Node] = field(default_factory=list)
     guards: dict[str, list[int]] = field(default_factory=dict)
+    functions: dict[int, tuple[str, tuple[int, ...]]] = field(default_factory=dict)
     _index: dict[tuple[Any, ...], int] = field(default_factory=dict)
 
     def input(self, name: str) -> Symbol:
@@ -102,6 +109,11 @@ class Tape:
         known = self.guards.setdefault(flag, [])
         if condition not in known:
             known.append(condition)
+
+    def remember(self, function: str, args: tuple[int, ...], result: int) -> None:
+        """Keep in mind that a node is an elementary function of others: its derivative is known."""
+        if all(a < result for a in args):
+            self.functions.setdefault(result, (function, args))
 
 
 class Symbol:

@@ -63,21 +63,36 @@ class Cell:
 
 @dataclass
 class PaperResult:
-    """What `Paper.run` leaves: cells and the files written."""
+    """What `Paper.run` leaves: cells and the files written.
+
+    Attributes:
+        name: The paper's name on the command line.
+        title: Its title.
+        cells: Every printed value with ours.
+        figures: Pictures.
+        beyond: What the paper does not print, one row each; all have the same keys but for
+            the details in tables of their own, which only ``beyond.json`` holds.
+        note: What a reader of these rows should know.
+    """
 
     name: str
     title: str
     cells: list[Cell]
     figures: list[Path] = field(default_factory=list)
+    beyond: list[dict[str, Any]] = field(default_factory=list)
+    note: str = ""
 
     def counts(self) -> Counter[str]:
         """Return how many cells have each status."""
         return Counter(cell.status for cell in self.cells)
 
     def write(self, out: Path) -> None:
-        """Write ``tables.json`` and ``tables.md``, each complete or not at all."""
+        """Write ``tables.json``, ``beyond.json`` and ``tables.md``, each complete or not at all."""
         rows = [cell.as_row() for cell in self.cells]
         replace_text(out / "tables.json", json.dumps(rows, indent=1) + "\n")
+        if self.beyond:
+            text = json.dumps(self.beyond, indent=1, allow_nan=False)
+            replace_text(out / "beyond.json", text + "\n")
         replace_text(out / "tables.md", self.markdown())
 
     def markdown(self) -> str:
@@ -99,7 +114,17 @@ class PaperResult:
                 )
                 lines.append("| " + " | ".join([*cells, c.parameters, c.status, c.note]) + " |")
             lines.append("")
-        return "\n".join(lines)
+        return "\n".join(lines + _beyond(self.beyond, self.note))
+
+
+def _beyond(rows: list[dict[str, Any]], note: str) -> list[str]:
+    if not rows:
+        return []
+    keys = [key for key, value in rows[0].items() if not isinstance(value, dict)]
+    lines = ["## Beyond the paper", "", note, ""]
+    lines += ["| " + " | ".join(keys) + " |", "|---" * len(keys) + "|"]
+    lines += ["| " + " | ".join(_text(row[key]) for key in keys) + " |" for row in rows]
+    return [*lines, ""]
 
 
 def _sentence(counts: Counter[str]) -> str:
@@ -107,9 +132,13 @@ def _sentence(counts: Counter[str]) -> str:
     return f"{sum(counts.values())} printed values: {', '.join(parts)}."
 
 
-def _text(value: Value) -> str:
+def _text(value: Value | bool | list[Any]) -> str:
     if value is None:
         return ""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, list):
+        return ", ".join(map(_text, value))
     return value if isinstance(value, str) else f"{value:.5g}"
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from nullmotion.errors import InputError
 from nullmotion.plot import palette, style
-from nullmotion.plot.view import Panel
+from nullmotion.plot.view import Mark, Panel
 
 SUFFIXES = (".png", ".pdf", ".svg")
 
@@ -33,13 +33,20 @@ def draw(panel: Panel, axes: Any, legend: bool = True) -> None:
         axes.axhline(level.value, color=palette.QUIET, linewidth=0.9, linestyle=(0, (2, 2)))
         if level.label:
             _name(axes, level.value, level.label)
+    for mark in panel.marks:
+        axes.axvline(mark.at, color=palette.ALERT, linewidth=0.8, linestyle=(0, (1, 1.5)))
+        if mark.label:
+            _name_mark(axes, mark)
     if panel.ticks:
         axes.set_xticks(range(len(panel.ticks)), panel.ticks)
-    axes.set_title(panel.title)
+    axes.set_title(panel.title, pad=12 if panel.marks else None)
     axes.set_xlabel(panel.x_title)
     axes.set_ylabel(panel.y_title)
     axes.margins(x=0.01, y=0.12 if panel.levels else 0.05)
-    axes.ticklabel_format(axis="y", style="sci", scilimits=(-3, 4), useOffset=False)
+    if panel.log:
+        axes.set_yscale("log")
+    else:
+        axes.ticklabel_format(axis="y", style="sci", scilimits=(-3, 4), useOffset=False)
     if legend and len(panel.curves) > 1:
         axes.legend(ncols=_columns(len(panel.curves)), loc="best")
 
@@ -49,17 +56,20 @@ def _columns(curves: int) -> int:
 
 
 def _name(axes: Any, value: float, label: str) -> None:
-    axes.annotate(
-        label,
-        xy=(0.0, value),
-        xycoords=("axes fraction", "data"),
-        xytext=(3, 2),
-        textcoords="offset points",
-        ha="left",
-        va="bottom",
-        fontsize=6.5,
-        color=palette.QUIET,
-    )
+    place: Any = {"xy": (0.0, value), "xycoords": ("axes fraction", "data")}
+    _small(axes, label, xytext=(3, 2), **place)
+
+
+def _name_mark(axes: Any, mark: Mark) -> None:
+    side = {"ha": "left" if mark.side == "right" else "right"}
+    _small(axes, mark.label, xy=(mark.at, 1.0), xycoords=("data", "axes fraction"), **side)
+
+
+def _small(axes: Any, label: str, **where: Any) -> None:
+    """Write the name of a line beside it."""
+    usual: dict[str, Any] = {"xytext": (0, 2), "ha": "left", "va": "bottom"}
+    usual |= {"fontsize": 6.5, "color": palette.QUIET}
+    axes.annotate(label, textcoords="offset points", **(usual | where))
 
 
 def sheet(

@@ -7,16 +7,17 @@ from typing import Any
 
 from nullmotion.plot.draw import save
 from nullmotion.plot.overlays import overlays
-from nullmotion.plot.panels import LITERATURE_PANELS
+from nullmotion.plot.panels import figure_panels
 from nullmotion.plot.varied import varied_panels
 from nullmotion.plot.view import Run
 
 
 def run_figure(trajectory: Run, path: str | Path, title: str = "") -> Path:
-    """Write the six panels that the field shows of a run (Mao 2019, Figs 7-31).
+    """Write the panels that the field shows of a run (Mao 2019, Figs 7-31).
 
     Output torque, norm of the momentum, gimbal rates, gimbal angles, effective residual
-    momentum, singularity measures.
+    momentum, singularity measures. Of an attitude run: pointing error, attitude, body rate,
+    output torque, gimbal rates, gimbal angles, singularity measures, motor torque.
 
     Args:
         trajectory: The run.
@@ -26,8 +27,7 @@ def run_figure(trajectory: Run, path: str | Path, title: str = "") -> Path:
     Returns:
         The path.
     """
-    panels = [panel for panel in (make(trajectory) for make in LITERATURE_PANELS) if panel.curves]
-    return save(panels, path, title=title)
+    return save(figure_panels(trajectory), path, title=title)
 
 
 def compare_figure(comparison: Any, path: str | Path, title: str = "") -> Path:

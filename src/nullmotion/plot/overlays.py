@@ -6,9 +6,19 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from nullmotion.plot import palette
+from nullmotion.plot import palette, quantities
+from nullmotion.plot.attitude import pointing_errors, tolerance
+from nullmotion.plot.events import marked
 from nullmotion.plot.panels import NORMALISED, angles
-from nullmotion.plot.quantities import rate_limits, steady_direction, torque_fractions
+from nullmotion.plot.parts import limited
+from nullmotion.plot.quantities import (
+    motor_limits,
+    of_attitude,
+    rate_limits,
+    sigma_min_turning,
+    steady_direction,
+    torque_fractions,
+)
 from nullmotion.plot.view import Case, Curve, Level, Panel, Run
 
 Series = Callable[[Run], np.ndarray]
@@ -39,14 +49,20 @@ def momentum_along(cases: Sequence[Case]) -> Panel:
     if ran and all(steady_direction(run) is not None for run in ran):
         curves = overlay(cases, lambda run: run.momentum @ steady_direction(run))
         return Panel("momentum", "Momentum along the command", "Momentum [N m s]", curves)
-    curves = overlay(cases, lambda run: np.linalg.norm(run.momentum, axis=1))
-    return Panel("momentum", "Momentum of the array", "|h| [N m s]", curves)
+    return momentum_norm(cases)
 
 
 def sigma_min(cases: Sequence[Case]) -> Panel:
     """Least singular value."""
-    curves = overlay(cases, lambda run: run.measures.get("sigma_min", np.full(len(run.t), np.nan)))
+
+    def series(run: Run) -> np.ndarray:
+        values = quantities.sigma_min(run)
+        return np.full(len(run.t), np.nan) if values is None else values
+
+    curves = overlay(cases, series)
     note = f"Zero at a singular state; {NORMALISED}."
+    if any(sigma_min_turning(case.trajectory) is not None for _, case in shown(cases)):
+        note += " Without stuck CMGs."
     return Panel("sigma_min", "Least singular value", "sigma_min [-]", curves, note=note)
 
 
@@ -64,12 +80,54 @@ def largest_rate(cases: Sequence[Case]) -> Panel:
     return Panel("largest_rate", "Largest gimbal rate", "max |rate| [deg/s]", curves, levels)
 
 
+def pointing_error(cases: Sequence[Case]) -> Panel:
+    """Pointing error of each case."""
+    levels = {level for _, case in shown(cases) for level in tolerance(case.trajectory)}
+    curves = overlay(cases, pointing_errors)
+    title, y_title = "Pointing error", "Error [deg]"
+    return Panel("pointing_error", title, y_title, curves, tuple(levels), log=True)
+
+
+def torque_missed(cases: Sequence[Case]) -> Panel:
+    """Difference of the torque given and asked."""
+    curves = overlay(cases, lambda run: np.linalg.norm(run.torque - run.hdot, axis=1))
+    note = "Length of A·δ̇ − ḣ: what the array did not give, or gave beside it."
+    return Panel("torque_missed", "Torque error", "Torque [N m]", curves, note=note)
+
+
+def momentum_norm(cases: Sequence[Case]) -> Panel:
+    """Norm of the array's momentum."""
+    curves = overlay(cases, lambda run: np.linalg.norm(run.momentum, axis=1))
+    return Panel("momentum", "Momentum of the array", "|h| [N m s]", curves)
+
+
+def largest_motor_torque(cases: Sequence[Case]) -> Panel:
+    """Largest torque of a gimbal motor at each time."""
+    curves = overlay(cases, lambda run: np.max(np.abs(run.motor_torque), axis=1))
+    limits = {limit for _, case in shown(cases) for limit in motor_limits(case.trajectory)}
+    panel = Panel("motor_torque", "Largest gimbal motor torque", "max |torque| [N m]", curves)
+    return limited(panel, sorted(limits), "N m")
+
+
 OVERLAYS = (momentum_along, sigma_min, off_axis, largest_rate)
+ATTITUDE_OVERLAYS = (
+    pointing_error,
+    torque_missed,
+    sigma_min,
+    momentum_norm,
+    largest_rate,
+    largest_motor_torque,
+)
 
 
 def overlays(cases: Sequence[Case]) -> list[Panel]:
     """Return the overlaid charts of a comparison; empty when no case ran."""
-    return [panel for panel in (make(cases) for make in OVERLAYS) if panel.curves]
+    ran = [case.trajectory for _, case in shown(cases)]
+    if not ran:
+        return []
+    made = ATTITUDE_OVERLAYS if of_attitude(ran[0]) else OVERLAYS
+    panels = [panel for panel in (make(cases) for make in made) if panel.curves]
+    return marked(panels, max(ran, key=lambda run: float(run.t[-1])))
 
 
 def angle_panels(cases: Sequence[Case]) -> list[Panel]:

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 
-from nullmotion.plot import palette
+from nullmotion.plot import attitude, palette
+from nullmotion.plot.events import marked
+from nullmotion.plot.parts import bundle, limited, with_norm
 from nullmotion.plot.quantities import (
+    SINGULAR,
     axis_names,
     cmg_names,
+    of_attitude,
     rate_limits,
+    sigma_min_turning,
     stop_level,
     torque_fractions,
 )
-from nullmotion.plot.view import Curve, Level, Panel, Run, bundle
+from nullmotion.plot.view import Curve, Level, Panel, Run
 
-NEAR_LIMIT = 0.2  # share of the rate limit from which its line leaves room for the curves
 NORMALISED = "for A divided by the mean momentum of the working CMGs"
 
 
@@ -41,10 +47,8 @@ def torque_error(run: Run) -> Panel:
 
 def momentum(run: Run) -> Panel:
     """Momentum of the array: components and norm."""
-    curves = bundle(run.t, run.momentum, axis_names(run))
-    norm = np.linalg.norm(run.momentum, axis=1)
-    whole = Curve("norm", run.t, norm, palette.INK, width=2.4)
-    return Panel("momentum", "Momentum of the array", "Momentum [N m s]", (*curves, whole))
+    curves = with_norm(run.t, run.momentum, axis_names(run))
+    return Panel("momentum", "Momentum of the array", "Momentum [N m s]", curves)
 
 
 def momentum_norm(run: Run) -> Panel:
@@ -56,19 +60,9 @@ def momentum_norm(run: Run) -> Panel:
 
 def rates(run: Run) -> Panel:
     """Gimbal rates with their limits; a limit far off is said, not drawn."""
-    low, high = np.nanmin(run.rates, initial=0.0), np.nanmax(run.rates, initial=0.0)
-    levels, far = [], []
-    for limit in rate_limits(run):
-        words = f"limit {np.degrees(limit):.4g} deg/s"
-        if max(high, -low) < NEAR_LIMIT * limit:
-            far.append(words)
-            continue
-        levels.append(Level(np.degrees(limit), words))
-        if low < -NEAR_LIMIT * limit:
-            levels.append(Level(-np.degrees(limit), ""))
     curves = bundle(run.t, np.degrees(run.rates), cmg_names(run))
-    note = f"Far below the {', '.join(far)}." if far else ""
-    return Panel("rates", "Gimbal rates", "Rate [deg/s]", curves, tuple(levels), note)
+    limits = [np.degrees(limit) for limit in rate_limits(run)]
+    return limited(Panel("rates", "Gimbal rates", "Rate [deg/s]", curves), limits, "deg/s")
 
 
 def angles(run: Run) -> Panel:
@@ -79,13 +73,15 @@ def angles(run: Run) -> Panel:
 
 def measures(run: Run) -> Panel:
     """Distance from singularity: least singular value and manipulability."""
-    names = [name for name in ("sigma_min", "sqrt_det_AAT") if name in run.measures]
-    columns = np.stack([run.measures[name] for name in names], axis=1) if names else None
-    curves = () if columns is None else bundle(run.t, columns, names)
-    title = "Singularity measures"
-    return Panel(
-        "measures", title, "Measure [-]", curves, note=f"Zero at a singular state; {NORMALISED}."
-    )
+    columns = {n: run.measures[n] for n in ("sigma_min", "sqrt_det_AAT") if n in run.measures}
+    note = f"Zero at a singular state; {NORMALISED}."
+    turning = sigma_min_turning(run)
+    if turning is not None:
+        columns["sigma_min without stuck CMGs"] = turning
+        note += " The other measures count a stuck CMG as if it turned."
+    curves = bundle(run.t, np.stack([*columns.values()], 1), [*columns]) if columns else ()
+    levels = (Level(SINGULAR, f"singular below {SINGULAR:g}"),) * of_attitude(run)
+    return Panel("measures", "Singularity measures", "Measure [-]", curves, levels, note)
 
 
 def residual(run: Run) -> Panel:
@@ -112,9 +108,32 @@ def state(run: Run) -> Panel:
 
 
 RUN_PANELS = (torque, torque_error, momentum, rates, angles, measures, residual, state)
+ATTITUDE_PANELS = (
+    attitude.pointing_error,
+    attitude.euler_angles,
+    attitude.body_rate,
+    torque,
+    rates,
+    angles,
+    measures,
+    momentum,
+    attitude.inertial_momentum,
+    attitude.motor_torque,
+    attitude.motor_power,
+)
 LITERATURE_PANELS = (torque, momentum_norm, rates, angles, residual, measures)
+ATTITUDE_FIGURE = (*ATTITUDE_PANELS[:7], attitude.motor_torque)
 
 
 def run_panels(run: Run) -> list[Panel]:
     """Return all charts of a run that have something to show."""
-    return [panel for panel in (make(run) for make in RUN_PANELS) if panel.curves]
+    return _shown(ATTITUDE_PANELS if of_attitude(run) else RUN_PANELS, run)
+
+
+def figure_panels(run: Run) -> list[Panel]:
+    """Return the charts that the field shows of a run: of its attitude, or of its torque."""
+    return _shown(ATTITUDE_FIGURE if of_attitude(run) else LITERATURE_PANELS, run)
+
+
+def _shown(made: Sequence[Callable[[Run], Panel]], run: Run) -> list[Panel]:
+    return marked([panel for panel in (make(run) for make in made) if panel.curves], run)

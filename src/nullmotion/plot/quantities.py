@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from nullmotion.plot.view import Run
+from nullmotion.spacecraft import faults
 
 STUCK_FRACTION = 0.02  # of the command; an escaping law gives at least some of it
 STUCK_SHARE = 0.1  # of the whole command: shorter pauses at the end are not called stuck
 USED_UP = 0.2  # momentum state (Mao 2019, Sec. VI: epsilon)
+SINGULAR = 0.1  # sigma_min below: somewhere a CMG gives less than a tenth of its torque
 _BODY_AXES = np.eye(3)
 
 
@@ -82,10 +86,58 @@ def saturated(run: Run) -> bool:
     return state is not None and bool(state < USED_UP)
 
 
+def finite(limits: Any) -> list[float]:
+    """Return the different finite values of a limit, ascending."""
+    return sorted({float(v) for v in np.ravel(np.asarray(limits, float)) if np.isfinite(v)})
+
+
 def rate_limits(run: Run) -> list[float]:
     """Return the different finite rate limits of the gimbals [rad/s], ascending."""
-    limits = np.atleast_1d(np.asarray(run.setup.array.rate_limit, float))
-    return sorted({float(v) for v in limits if np.isfinite(v)})
+    return finite(run.setup.array.rate_limit)
+
+
+def motor_limits(run: Run) -> list[float]:
+    """Return the different finite torque limits of the gimbal motors [N m], ascending."""
+    servo = getattr(run.setup, "servo", None)
+    return [] if servo is None else finite(servo.torque_limit)
+
+
+def of_attitude(run: Run | None) -> bool:
+    """Return whether a run turned a spacecraft."""
+    return getattr(run, "q_BN", None) is not None
+
+
+def tolerance_deg(run: Run) -> float | None:
+    """Return the pointing error that counts as settled [deg]; None where that is not measured."""
+    for metric in getattr(run.setup, "metrics", ()):
+        if metric.name == "settling_time_s":
+            return float(np.degrees(metric.tolerance))
+    return None
+
+
+def final_error_deg(run: Run) -> float:
+    """Return the pointing error at the end [deg]."""
+    last = run.metrics.get("final_pointing_error_deg")
+    return float(np.degrees(run.pointing_error[-1]) if last is None else last)
+
+
+def sigma_min_turning(run: Run) -> np.ndarray | None:
+    """Return sigma_min of the CMGs that are not stuck, over the same momentum; None if all turn."""
+    stuck = faults.of_kind(getattr(run.setup, "events", ()), "stuck")
+    if not any(event.at < run.t[-1] for event in stuck):
+        return None
+    array = run.setup.array if run.setup.plant is None else run.setup.plant
+    turns = np.array([faults.stuck(stuck, array.n, float(t)) for t in run.t])
+    A = array.jacobian(np.nan_to_num(run.delta)) / array.mean_momentum * turns[:, None, :]
+    least = np.linalg.eigvalsh(A @ A.transpose(0, 2, 1))[:, 0]
+    known = np.isfinite(run.delta).all(axis=1)
+    return np.where(known, np.sqrt(np.maximum(least, 0.0)), np.nan)
+
+
+def sigma_min(run: Run) -> np.ndarray | None:
+    """Return sigma_min of the CMGs that are not stuck, (k,); None if it is not known."""
+    turning = sigma_min_turning(run)
+    return run.measures.get("sigma_min") if turning is None else turning
 
 
 def stop_level(run: Run, metric: str) -> float | None:

@@ -8,21 +8,37 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from nullmotion.plot import palette
+from nullmotion.plot.quantities import of_attitude
 from nullmotion.plot.view import Curve, Panel
 
-# metric, title, ordinate, factor to its unit
+
+class Varied(NamedTuple):
+    """A metric as an ordinate: its key, title, name with unit, factor to this unit, a remark."""
+
+    metric: str
+    title: str
+    y_title: str
+    factor: float = 1.0
+    log: bool = False
+    note: str = ""
+
+
+_SHARE = "Share of command [%]"
 VARIED_METRICS = (
-    ("stopped_at_s", "Time to stop", "Time [s]", 1.0),
-    ("final_momentum_reserve_Nms", "Momentum reserve at the end", "Reserve [N m s]", 1.0),
-    ("max_off_axis_torque_fraction", "Off-axis torque, peak", "Share of command [%]", 100.0),
-    (
-        "max_along_axis_torque_fraction",
-        "Along-axis torque error, peak",
-        "Share of command [%]",
-        100.0,
-    ),
-    ("max_rate_step_rad_s", "Largest rate step", "Step [rad/s]", 1.0),
-    ("min_sigma_min", "Least sigma_min", "sigma_min [-]", 1.0),
+    Varied("stopped_at_s", "Time to stop", "Time [s]"),
+    Varied("final_momentum_reserve_Nms", "Momentum reserve at the end", "Reserve [N m s]"),
+    Varied("max_off_axis_torque_fraction", "Off-axis torque, peak", _SHARE, 100.0),
+    Varied("max_along_axis_torque_fraction", "Along-axis torque error, peak", _SHARE, 100.0),
+    Varied("max_rate_step_rad_s", "Largest rate step", "Step [rad/s]"),
+    Varied("min_sigma_min", "Least sigma_min", "sigma_min [-]"),
+)
+VARIED_ATTITUDE = (
+    Varied("settling_time_s", "Settling time", "Time [s]", note="No point where not settled."),
+    Varied("final_pointing_error_deg", "Pointing error at the end", "Error [deg]", log=True),
+    Varied("max_motor_torque_Nm", "Largest gimbal motor torque", "Torque [N m]"),
+    Varied("rate_saturated_s", "Rate-saturated time", "Time [s]"),
+    Varied("min_sigma_min", "Least sigma_min", "sigma_min [-]"),
+    Varied("gimbal_travel_rad", "Gimbal travel", "Travel [rad]"),
 )
 
 
@@ -41,7 +57,9 @@ def varied_panels(comparison: Any) -> list[Panel]:
         return []
     ticks = tick_names(comparison.cases)
     laws = series(comparison.cases, ticks)
-    made = [_panel(key, ticks, laws, *entry) for entry in VARIED_METRICS]
+    attitude = any(of_attitude(case.trajectory) for case in comparison.cases)
+    chosen = VARIED_ATTITUDE if attitude else VARIED_METRICS
+    made = [_panel(key, ticks, laws, entry) for entry in chosen]
     return [panel for panel in made if panel.curves]
 
 
@@ -75,25 +93,20 @@ def _number(value: Any) -> float:
     return float(value) if isinstance(value, (int, float, np.number)) else np.nan
 
 
-def _panel(
-    key: str,
-    ticks: tuple[str, ...],
-    laws: Sequence[Series],
-    metric: str,
-    title: str,
-    y_title: str,
-    factor: float,
-) -> Panel:
+def _panel(key: str, ticks: tuple[str, ...], laws: Sequence[Series], what: Varied) -> Panel:
     curves = tuple(
         Curve(
             law.label,
             law.x,
-            factor * law.metrics[metric],
+            what.factor * law.metrics[what.metric],
             palette.colour(i),
             palette.dash(i),
             marker=len(law.x) <= 30,
         )
         for i, law in enumerate(laws)
-        if metric in law.metrics and np.isfinite(law.metrics[metric]).any()
+        if what.metric in law.metrics and np.isfinite(law.metrics[what.metric]).any()
     )
-    return Panel(f"varied_{metric}", title, y_title, curves, x_title=key, ticks=ticks)
+    name = f"varied_{what.metric}"
+    return Panel(
+        name, what.title, what.y_title, curves, (), what.note, key, ticks=ticks, log=what.log
+    )

@@ -7,15 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
-from nullmotion.plot import palette
-
 
 class Run(Protocol):
-    """What a picture reads of a trajectory (`nullmotion.sim.Trajectory` is one)."""
+    """What a picture reads of a trajectory (`nullmotion.sim.Trajectory` is one).
+
+    From ``q_BN`` on only runs that turn a spacecraft have it (`quantities.of_attitude`).
+    """
 
     t: np.ndarray
     delta: np.ndarray
@@ -31,6 +32,12 @@ class Run(Protocol):
     status: Sequence[str]
     backend: str
     setup: Any
+    q_BN: Any
+    omega_BN_B: Any
+    reference: Any
+    pointing_error: Any
+    inertial_momentum: Any
+    motor_torque: Any
 
 
 class Case(Protocol):
@@ -75,6 +82,21 @@ class Level:
 
 
 @dataclass(frozen=True)
+class Mark:
+    """A vertical line with a name above it, such as a fault.
+
+    Args:
+        at: Abscissa.
+        label: Its name; empty where a neighbour's name is for both.
+        side: To which side of the line the name runs.
+    """
+
+    at: float
+    label: str
+    side: Literal["left", "right"] = "right"
+
+
+@dataclass(frozen=True)
 class Panel:
     """One chart.
 
@@ -87,6 +109,8 @@ class Panel:
         note: A sentence a reader needs beside the title.
         x_title: Quantity and unit of the abscissa.
         ticks: Names of the abscissas 0, 1, 2, ... where these are no numbers.
+        log: Whether the ordinate is logarithmic.
+        marks: Instants.
     """
 
     key: str
@@ -97,11 +121,5 @@ class Panel:
     note: str = ""
     x_title: str = "Time [s]"
     ticks: tuple[str, ...] = ()
-
-
-def bundle(x: np.ndarray, columns: np.ndarray, labels: Sequence[str]) -> tuple[Curve, ...]:
-    """Return one curve a column, each with its own colour and dash."""
-    return tuple(
-        Curve(label, x, columns[:, i], palette.colour(i), palette.dash(i))
-        for i, label in enumerate(labels)
-    )
+    log: bool = False
+    marks: tuple[Mark, ...] = ()

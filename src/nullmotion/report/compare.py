@@ -7,13 +7,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from nullmotion.plot.events import told
 from nullmotion.plot.overlays import angle_panels, overlays
 from nullmotion.plot.varied import varied_panels
 from nullmotion.plot.view import Case, Panel
 from nullmotion.report import page
 from nullmotion.report.charts import Charts, grid, shared_legend
 from nullmotion.report.markup import Markup, tag
-from nullmotion.report.results import outcome, result_table, varied_table
+from nullmotion.report.requirements import compared_table
+from nullmotion.report.results import attitudes, outcome, result_table, varied_table
 from nullmotion.report.run import thinning
 
 MOST_MULTIPLES = 24  # small multiples of gimbal angles on one page
@@ -23,6 +25,7 @@ TALLY: dict[str, str] = {
     "trouble": "stuck or failed",
     "refused": "could not run",
 }
+TALLY_ATTITUDE = TALLY | {"done": "settled", "trouble": "not settled"}
 
 
 def compare_report(comparison: Any, path: str | Path, title: str, scenario_text: str = "") -> Path:
@@ -53,6 +56,8 @@ def compare_report(comparison: Any, path: str | Path, title: str, scenario_text:
         )
     else:
         parts.append(page.section("Results", result_table(cases), id="results"))
+        kept = compared_table(cases)
+        parts += [page.section("Requirements", kept, id="requirements")] if kept else []
     if together:
         parts.append(curves(charts, together, "Over time", "time", page.toolbar()))
     if multiples:
@@ -83,16 +88,19 @@ def curves(
 def headline(cases: Sequence[Case], title: str) -> Markup:
     """Return the first lines: title, how the cases went, what they ran on."""
     tones: Counter[str] = Counter(outcome(case).tone for case in cases)
-    tally = ", ".join(f"{tones[tone]} {words}" for tone, words in TALLY.items() if tones[tone])
+    known = TALLY_ATTITUDE if attitudes(cases) else TALLY
+    tally = ", ".join(f"{tones[tone]} {words}" for tone, words in known.items() if tones[tone])
     plural = "case" if len(cases) == 1 else "cases"
-    first = next(
-        (case.trajectory.setup.array for case in cases if case.trajectory is not None), None
-    )
+    ran = [case.trajectory for case in cases if case.trajectory is not None]
     return tag(
         "header",
         tag("p", title, class_="title"),
         tag("h1", f"{len(cases)} {plural}: {tally}"),
-        tag("p", f"On {first.label}, {first.n} CMGs", class_="subject")
-        if first is not None
-        else "",
+        tag("p", subject(ran[0]), class_="subject") if ran else "",
     )
+
+
+def subject(run: Any) -> str:
+    """Return what the cases ran on, and what was lost on the way."""
+    array = run.setup.array
+    return "; ".join(filter(None, [f"On {array.label}, {array.n} CMGs", told(run)]))

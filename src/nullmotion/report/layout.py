@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from html import escape
 from typing import Any
 
+import numpy as np
+
 from nullmotion.plot import palette
-from nullmotion.plot.view import Panel
+from nullmotion.plot.view import Level, Mark, Panel
 
 _AXIS = {
     "gridcolor": palette.GRID,
@@ -24,13 +27,18 @@ def layout(panel: Panel) -> dict[str, Any]:
     """Return axes, limits and their names as plotly's layout; text is escaped."""
     named = [escape(name) for name in panel.ticks]
     ticks = {"tickvals": list(range(len(named))), "ticktext": named} if named else {}
+    y_axis = {"title": {"text": escape(panel.y_title), "standoff": 4}, "nticks": 6}
+    if panel.log:
+        y_axis |= _logarithmic(panel)
+    names = [_level_name(panel, level) for level in panel.levels if level.label]
     return {
         "xaxis": {**_AXIS, **ticks, "title": {"text": escape(panel.x_title), "standoff": 6}},
-        "yaxis": {**_AXIS, "title": {"text": escape(panel.y_title), "standoff": 4}, "nticks": 6},
-        "shapes": [_level_line(level.value) for level in panel.levels],
-        "annotations": [
-            _level_name(level.value, level.label) for level in panel.levels if level.label
+        "yaxis": {**_AXIS, **y_axis},
+        "shapes": [
+            *(_level_line(level.value) for level in panel.levels),
+            *(_mark_line(mark.at) for mark in panel.marks),
         ],
+        "annotations": [*names, *(_mark_name(mark) for mark in panel.marks if mark.label)],
     }
 
 
@@ -47,16 +55,38 @@ def _level_line(value: float) -> dict[str, Any]:
     }
 
 
-def _level_name(value: float, label: str) -> dict[str, Any]:
+def _logarithmic(panel: Panel) -> dict[str, Any]:
+    """Return what makes an ordinate logarithmic, with at most some seven ticks."""
+    values = np.concatenate([curve.y for curve in panel.curves])
+    values = values[np.isfinite(values) & (values > 0)]
+    low, high = (values.min(), values.max()) if len(values) else (1.0, 1.0)
+    decades = max(1, math.ceil(math.log10(high / low) / 6))
+    plainly = "none" if low > 1e-4 else "power"
+    return {"type": "log", "dtick": decades, "exponentformat": plainly}
+
+
+def _mark_line(at: float) -> dict[str, Any]:
+    line = {"color": palette.ALERT, "width": 1.2, "dash": "dot"}
+    return {"type": "line", "yref": "paper", "x0": at, "x1": at, "y0": 0, "y1": 1, "line": line}
+
+
+def _level_name(panel: Panel, level: Level) -> dict[str, Any]:
+    y = math.log10(level.value) if panel.log else level.value  # as plotly wants it
+    return _name(level.label, xref="paper", x=0.005, y=y, yanchor="bottom")
+
+
+def _mark_name(mark: Mark) -> dict[str, Any]:
+    anchor = "left" if mark.side == "right" else "right"
+    return _name(mark.label, yref="paper", x=mark.at, y=1, yanchor="bottom", xanchor=anchor)
+
+
+def _name(label: str, **where: Any) -> dict[str, Any]:
     return {
-        "xref": "paper",
-        "x": 0.005,
         "xanchor": "left",
-        "y": value,
-        "yanchor": "bottom",
         "text": escape(label),
         "showarrow": False,
         "font": {"size": 11, "color": palette.QUIET},
         "bgcolor": "rgba(255,255,255,0.75)",
         "borderpad": 1,
+        **where,
     }

@@ -39,6 +39,15 @@ COLUMNS = (
     Column("Rate step [rad/s]", "max_rate_step_rad_s", "low"),
     Column("Least sigma_min [-]", "min_sigma_min", "high"),
 )
+ATTITUDE_COLUMNS = (
+    Column("Settling time [s]", "settling_time_s", "low"),
+    Column("Final pointing error [deg]", "final_pointing_error_deg", "low"),
+    Column("Peak body rate [deg/s]", "max_body_rate_deg_s"),
+    Column("Peak motor torque [N\u00a0m]", "max_motor_torque_Nm", "low"),
+    Column("Rate-saturated [s]", "rate_saturated_s", "low"),
+    Column("Least sigma_min [-]", "min_sigma_min", "high"),
+    Column("Gimbal travel [rad]", "gimbal_travel_rad", "low"),
+)
 
 _FLOOR = 1e-6  # differences below are rounding, not merit
 

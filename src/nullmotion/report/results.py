@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Literal, NamedTuple
 
+from nullmotion.plot.events import stuck
+from nullmotion.plot.quantities import of_attitude
 from nullmotion.plot.view import Case
 from nullmotion.report.markup import Markup, join, tag
-from nullmotion.report.ranking import COLUMNS, best, cell
+from nullmotion.report.ranking import ATTITUDE_COLUMNS, COLUMNS, Column, best, cell
+from nullmotion.report.requirements import of_case, tally
 from nullmotion.report.tables import table
 from nullmotion.report.verdict import status_words, verdict
 from nullmotion.report.wording import plain
@@ -24,6 +27,13 @@ MARKING = (
     "(not stuck, no failure). Torque figures are shares of the command; sigma_min is for A "
     "divided by the mean momentum of the working CMGs."
 )
+
+MARKING_ATTITUDE = (
+    "★ and a frame mark the best value of a column among the cases that settled. sigma_min is for "
+    "A divided by the mean momentum of the working CMGs."
+)
+STUCK = " It counts a stuck CMG as if it turned."
+_BASIS = ("Parameters", "Information used", "Status")
 
 
 class Outcome(NamedTuple):
@@ -45,52 +55,65 @@ def result_table(cases: Sequence[Case]) -> Markup:
     outcomes = [outcome(case) for case in cases]
     eligible = [o.tone in ("done", "stopped") for o in outcomes]
     columns = []
-    for column in COLUMNS:
+    for column in _columns(cases):
         values = [case.metrics.get(column.key) for case in cases]
         won = best(column, values, eligible)
         columns.append([cell(column.written(v), w) for v, w in zip(values, won, strict=True)])
+    if _required(cases):
+        columns.append([_passed(case) for case in cases])
     rows = [
         (_name(case), _result(said), *numbers, *_basis(case))
         for case, said, *numbers in zip(cases, outcomes, *columns, strict=True)
     ]
-    head = (
-        "Case",
-        "Result",
-        *(c.title for c in COLUMNS),
-        "Parameters",
-        "Information used",
-        "Status",
-    )
-    numeric = range(2, 2 + len(COLUMNS))
+    head = ("Case", "Result", *_heads(cases), *_BASIS)
+    numeric = range(2, 2 + len(columns))
     made = table(head, rows, "Cases and their results", numeric=numeric, wide=True)
-    return join(made, tag("p", MARKING, class_="note"))
+    words = MARKING_ATTITUDE if attitudes(cases) else MARKING
+    if any(stuck(case.trajectory) for case in cases if case.trajectory is not None):
+        words += STUCK
+    return join(made, tag("p", words, class_="note"))
 
 
 def varied_table(cases: Sequence[Any], key: str) -> Markup:
     """Return the table of a comparison over the values of a key, nothing marked."""
     shown = cases[:MOST_ROWS]
-    rows = [
-        (_name(case), _result(outcome(case)), str(case.value), *_numbers(case), *_basis(case))
-        for case in shown
-    ]
-    head = (
-        "Case",
-        "Result",
-        key,
-        *(c.title for c in COLUMNS),
-        "Parameters",
-        "Information used",
-        "Status",
-    )
-    made = table(head, rows, "Cases at each value", numeric=range(2, 3 + len(COLUMNS)), wide=True)
+    required = _required(cases)
+    rows = []
+    for case in shown:
+        numbers = [column.written(case.metrics.get(column.key)) for column in _columns(cases)]
+        numbers += [_passed(case)] if required else []
+        said = _result(outcome(case))
+        rows.append((_name(case), said, str(case.value), *numbers, *_basis(case)))
+    head = ("Case", "Result", key, *_heads(cases), *_BASIS)
+    numeric = range(2, len(head) - len(_BASIS))
+    made = table(head, rows, "Cases at each value", numeric=numeric, wide=True)
     left = len(cases) - len(shown)
     return join(
         made, tag("p", f"{left} more cases are not shown here.", class_="note") if left else ""
     )
 
 
-def _numbers(case: Case) -> list[str]:
-    return [column.written(case.metrics.get(column.key)) for column in COLUMNS]
+def attitudes(cases: Sequence[Any]) -> bool:
+    """Return whether a comparison turns a spacecraft."""
+    return any(of_attitude(case.trajectory) for case in cases)
+
+
+def _columns(cases: Sequence[Any]) -> tuple[Column, ...]:
+    return ATTITUDE_COLUMNS if attitudes(cases) else COLUMNS
+
+
+def _heads(cases: Sequence[Any]) -> list[str]:
+    titles = [column.title for column in _columns(cases)]
+    return [*titles, "Requirements passed"] if _required(cases) else titles
+
+
+def _required(cases: Sequence[Any]) -> bool:
+    return any(of_case(case) for case in cases)
+
+
+def _passed(case: Any) -> str:
+    results = of_case(case)
+    return tally(results) if results else "–"
 
 
 def _basis(case: Any) -> tuple[str, str, str]:

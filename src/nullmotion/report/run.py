@@ -6,18 +6,30 @@ from pathlib import Path
 
 import numpy as np
 
+from nullmotion import rotation
+from nullmotion.plot.events import told
 from nullmotion.plot.panels import run_panels
+from nullmotion.plot.quantities import of_attitude
 from nullmotion.plot.view import Run
 from nullmotion.report import page
+from nullmotion.report.attitude_tiles import attitude_tiles
 from nullmotion.report.charts import Charts, grid
+from nullmotion.report.findings import findings
 from nullmotion.report.markup import Markup, join, tag
+from nullmotion.report.requirements import Results, requirement_table
 from nullmotion.report.tables import metric_table
 from nullmotion.report.tiles import row, run_tiles
 from nullmotion.report.verdict import status_words, verdict
 from nullmotion.report.wording import number
 
 
-def run_report(trajectory: Run, path: str | Path, title: str, scenario_text: str = "") -> Path:
+def run_report(
+    trajectory: Run,
+    path: str | Path,
+    title: str,
+    scenario_text: str = "",
+    requirements: Results = (),
+) -> Path:
     """Write one run as an HTML page that needs no network.
 
     Args:
@@ -25,6 +37,7 @@ def run_report(trajectory: Run, path: str | Path, title: str, scenario_text: str
         path: File to write.
         title: Title of the page.
         scenario_text: The scenario file as written, shown on demand.
+        requirements: What `nullmotion.scenario.requirements.evaluate` returns.
 
     Returns:
         The path.
@@ -32,9 +45,13 @@ def run_report(trajectory: Run, path: str | Path, title: str, scenario_text: str
     panels = run_panels(trajectory)
     charts = Charts.for_curves(sum(len(panel.curves) for panel in panels))
     drawn = [charts.add(panel, group="time") for panel in panels]
+    attitude = of_attitude(trajectory)
+    tiles = attitude_tiles(trajectory) if attitude else run_tiles(trajectory)
+    kept = requirement_table(requirements) if requirements else None
     parts = [
-        headline(trajectory, title),
-        page.section("Key numbers", row(run_tiles(trajectory)), id="numbers"),
+        headline(trajectory, title, requirements),
+        page.section("Key numbers", row(tiles), id="numbers"),
+        *([page.section("Requirements", kept, id="requirements")] if kept else []),
         page.section(
             "Over time", page.toolbar(), grid(drawn), thinning(charts), id="charts-section"
         ),
@@ -47,15 +64,21 @@ def run_report(trajectory: Run, path: str | Path, title: str, scenario_text: str
     return page.write(path, page.document(title, parts, charts, page.versions(trajectory)))
 
 
-def headline(run: Run, title: str) -> Markup:
-    """Return the first lines: title, verdict, what ran."""
+def headline(run: Run, title: str, requirements: Results = ()) -> Markup:
+    """Return the first lines: title, verdict, what ran, what else happened."""
     said = verdict(run)
+    lost = told(run) if said.tone == "trouble" else ""
+    words = f"{lost}; {said.words[0].lower()}{said.words[1:]}" if lost else said.words
     flags = [tag("li", flag) for flag in status_words(run)]
+    more = findings(run, requirements, not lost) if of_attitude(run) else []
     return tag(
         "header",
         tag("p", title, class_="title"),
-        tag("h1", said.words, class_=f"verdict {said.tone}"),
+        tag("h1", words, class_=f"verdict {said.tone}"),
         tag("p", subject(run), class_="subject"),
+        tag("ul", join(*(tag("li", sentence) for sentence in more)), class_="findings")
+        if more
+        else "",
         tag("ul", join(*flags), class_="flags", aria_label="Status") if flags else "",
     )
 
@@ -67,10 +90,25 @@ def subject(run: Run) -> str:
     name = f"{long} ({law.name})" if long and long.lower() != law.name.lower() else law.name
     same = np.ptp(array.h0) == 0
     size = f"{number(array.mean_momentum)} N m s {'each' if same else 'in the mean'}"
-    asked = "a command that changes over time"
+    on = f"{name} on {array.label}, {array.n} CMGs of {size}"
+    return f"{on}; {turn(run)}" if of_attitude(run) else f"{on}; asked for {command(run)}"
+
+
+def command(run: Run) -> str:
+    """Return the commanded rate of momentum."""
     if np.ptp(run.hdot, axis=0).max() == 0:
-        asked = f"({', '.join(number(v) for v in run.hdot[0])}) N m"
-    return f"{name} on {array.label}, {array.n} CMGs of {size}; asked for {asked}"
+        return f"({', '.join(number(v) for v in run.hdot[0])}) N m"
+    return "a command that changes over time"
+
+
+def turn(run: Run) -> str:
+    """Return which attitude was asked, and of which controller."""
+    first, last = run.q_BN[0], run.reference[-1]
+    angle = np.degrees(rotation.angle(rotation.multiply(rotation.conjugate(first), last)))
+    way = "" if run.setup.reference is None else "following a reference "
+    controller = run.setup.controller
+    long = getattr(controller, "full_name", "") or controller.name
+    return f"asked to turn by {number(angle)} deg, {way}under {long.lower()}"
 
 
 def thinning(charts: Charts) -> Markup:

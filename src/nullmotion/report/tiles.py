@@ -7,7 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nullmotion.plot.quantities import rate_limits, steady_direction, torque_fractions
+from nullmotion.plot.quantities import (
+    rate_limits,
+    sigma_min,
+    sigma_min_turning,
+    steady_direction,
+    torque_fractions,
+)
 from nullmotion.plot.view import Run
 from nullmotion.report.markup import Markup, join, tag
 from nullmotion.report.wording import number, percent
@@ -39,7 +45,7 @@ def run_tiles(run: Run) -> list[Tile]:
         _time(run),
         _momentum(run),
         _along(run),
-        _sigma(run),
+        least_sigma(run),
         _error(run),
         _rate(run),
         _step(run),
@@ -72,14 +78,15 @@ def _along(run: Run) -> Tile | None:
     return Tile("Gained along command", number(gained), "N m s", share)
 
 
-def _sigma(run: Run) -> Tile | None:
-    values = run.measures.get("sigma_min")
+def least_sigma(run: Run) -> Tile | None:
+    """Return the least singular value and when; None if it is not known."""
+    values = sigma_min(run)
     if values is None or not np.isfinite(values).any():
         return None
     at = int(np.nanargmin(values))
-    return Tile(
-        "Least sigma_min", number(values[at], 3), "", f"at {number(run.t[at])} s; 0 is singular"
-    )
+    remark = "0 is singular" if sigma_min_turning(run) is None else "without stuck CMGs"
+    note = f"at {number(run.t[at])} s; {remark}"
+    return Tile("Least sigma_min", number(values[at], 3), "", note)
 
 
 def _error(run: Run) -> Tile | None:

@@ -6,7 +6,13 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from nullmotion.plot.quantities import saturated, stuck_since
+from nullmotion.plot.quantities import (
+    final_error_deg,
+    of_attitude,
+    saturated,
+    stuck_since,
+    tolerance_deg,
+)
 from nullmotion.plot.view import Run
 from nullmotion.report.wording import number, plain
 
@@ -30,6 +36,8 @@ def verdict(run: Run) -> Verdict:
     broken = _broken_at(run)
     if broken is not None:
         return Verdict(f"Failed: not a number from {number(broken)} s on", "trouble")
+    if of_attitude(run):
+        return _of_attitude(run)
     stuck = stuck_since(run)
     if stuck is not None and saturated(run):
         return Verdict(
@@ -43,8 +51,27 @@ def verdict(run: Run) -> Verdict:
     return Verdict(f"Ran to the end ({number(run.t[-1])} s)", "done")
 
 
+def _of_attitude(run: Run) -> Verdict:
+    """Return whether the attitude settled; by metrics, as the history may be thinned."""
+    left = f"{number(final_error_deg(run))} deg left at the end"
+    stopped = run.stopped_at_s is not None
+    ended = f"Stopped at {number(run.stopped_at_s)} s: {plain(run.stop_reason)}" if stopped else ""
+    allowed, settled = tolerance_deg(run), run.metrics.get("settling_time_s")
+    if allowed is None or settled is None:
+        tone: Tone = "stopped" if stopped else "done"
+        return Verdict(f"{ended or f'Ran to the end ({number(run.t[-1])} s)'}; {left}", tone)
+    within = f"within {number(allowed)} deg"
+    if not np.isfinite(settled):
+        words = f"ot settled {within}: {left}"
+        return Verdict(f"{ended}; n{words}" if stopped else f"N{words}", "trouble")
+    words = f"Settled {within} in {number(settled)} s" if settled > 0 else f"Always {within}"
+    return Verdict("; ".join(filter(None, [words, ended.lower()])), "done")
+
+
 def _broken_at(run: Run) -> float | None:
     good = np.isfinite(run.delta).all(axis=1)
+    if of_attitude(run):
+        good &= np.isfinite(run.q_BN).all(axis=1)
     return None if good.all() else float(run.t[np.flatnonzero(~good)[0]])
 
 

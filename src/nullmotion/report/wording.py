@@ -15,6 +15,7 @@ REDUCTIONS = {
     "mean": "mean over the run",
     "final": "at the end",
 }
+NOT_SETTLED = "not settled"
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -61,13 +62,16 @@ def plain(name: str) -> str:
 def meaning(key: str) -> Meaning:
     """Return what a metric's key in a summary (``min_sigma_min``) stands for."""
     reduction, _, name = key.partition("_")
-    if reduction not in REDUCTIONS:
-        return Meaning(plain(key), _unit_of(key))
+    how = ""
+    if reduction in REDUCTIONS:
+        how = f", {REDUCTIONS[reduction]}"
+    else:
+        name = key
     try:
         metric = metrics.get(name)
     except UnknownNameError:
-        return Meaning(f"{plain(name)}, {REDUCTIONS[reduction]}", _unit_of(name))
-    words = f"{metric.title or plain(name)}, {REDUCTIONS[reduction]}"
+        return Meaning(f"{plain(name)}{how}", _unit_of(name))
+    words = f"{metric.title or plain(name)}{how}"
     first = (metric.__doc__ or "").strip().partition("\n\n")[0].replace("``", "")
     return Meaning(words, metric.unit, " ".join(first.split()).rstrip("."), metric.citation)
 
@@ -86,7 +90,12 @@ def _unit_of(name: str) -> str:
 
 
 def quantity(value: Any, unit: str, name: str = "") -> tuple[str, str]:
-    """Return value and unit as written: fractions in percent, plain numbers without a unit."""
+    """Return value and unit as written: fractions in percent, plain numbers without a unit.
+
+    A settling time that is not a number is said in words.
+    """
+    if name == "settling_time_s" and value is not None and math.isnan(value):
+        return NOT_SETTLED, ""
     if name.endswith("_fraction"):
         return percent(value), "%"
     return number(value), "" if unit in ("", "1") else unit

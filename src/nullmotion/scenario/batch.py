@@ -8,20 +8,15 @@ from typing import Any
 import numpy as np
 
 from nullmotion.errors import InputError
-from nullmotion.scenario import build, keys, merge, objects, sections
+from nullmotion.scenario import build, columns, keys, merge, sections
 from nullmotion.scenario.scenario import Scenario
 from nullmotion.scenario.toml import value_text
 from nullmotion.sim.batch import BatchResult, run_batch, structure
 from nullmotion.sim.setup import Setup
 
-_START, _COMMAND = "initial.gimbal_deg", "mission.hdot_Nm"
+_NOT_SEARCHED = ("scenario", "compare", "event", "plan", "requirements")
 _SEARCHED = (
-    ("array",),
-    ("plant",),
-    ("initial",),
-    ("law",),
-    ("mission",),
-    ("simulation",),
+    *((name,) for name in sections.SECTIONS if name not in _NOT_SEARCHED),
     ("simulation", "stop"),
 )
 
@@ -30,14 +25,13 @@ def run(
     scenario: Scenario, values: Mapping[str, Any], metrics: tuple[str, ...] | None, **options: Any
 ) -> BatchResult:
     """Return the metrics of the runs that values by key describe; see `simulate_batch`."""
-    columns = {dotted_key(scenario, key): value for key, value in values.items()}
-    count = _count(columns)
+    given = {dotted_key(scenario, key): value for key, value in values.items()}
+    count = _count(given)
     base = build.setup(scenario, metrics)
-    delta = _start(scenario, base, columns.pop(_START, None))
-    hdot = _command(base, columns.pop(_COMMAND, None))
-    if not columns:
-        return _simulated(base, None, delta, hdot, options)
-    setups = _setups(scenario, columns, count, metrics)
+    arrays, others = columns.split(scenario, base, given)
+    if not others:
+        return _simulated(base, None, arrays, options)
+    setups = _setups(scenario, others, count, metrics)
     together = groups(setups)
     if len(together) > 1 and options.get("history"):
         raise InputError(
@@ -46,8 +40,8 @@ def run(
     parts = []
     for rows in together:
         picked = [setups[i] for i in rows]
-        starts, commands = (None if x is None else x[rows] for x in (delta, hdot))
-        parts.append(_simulated(picked[0], picked, starts, commands, options))
+        own = {key: table[rows] for key, table in arrays.items()}
+        parts.append(_simulated(picked[0], picked, own, options))
     return merge.merged(parts, together)
 
 
@@ -55,12 +49,16 @@ def dotted_key(scenario: Scenario, key: str) -> str:
     """Return ``section.key`` for a key that stands in one section only."""
     if "." in key:
         return key
-    known = {path: sections.section_keys(scenario.source.data, path) for path in _SEARCHED}
-    found = [".".join((*path, key)) for path, names in known.items() if key in names]
-    if len(found) == 1:
-        return found[0]
-    if found:
-        raise InputError(key, "(given)", f"one section; it stands in several: {', '.join(found)}")
+    data = scenario.source.data
+    paths = [*_SEARCHED, *(("event", i) for i in range(len(scenario.events)))]
+    known = {path: sections.section_keys(data, path) for path in paths}
+    found = [path for path, names in known.items() if key in names]
+    found = [path for path in found if path[0] in data] or found
+    dotted = sorted(".".join(map(str, (*path, key))) for path in found)
+    if len(dotted) == 1:
+        return dotted[0]
+    if dotted:
+        raise InputError(key, "(given)", f"one section; it stands in several: {', '.join(dotted)}")
     raise InputError(
         key, "(given)", keys.hint(key, [name for names in known.values() for name in names])
     )
@@ -76,42 +74,6 @@ def _count(columns: Mapping[str, Any]) -> int:
     if len(set(counts.values())) != 1 or 0 in counts.values():
         raise InputError("runs", counts, "the same number of runs (at least one) in every value")
     return next(iter(counts.values()))
-
-
-def _table(key: str, value: Any, widths: tuple[int, ...]) -> np.ndarray:
-    try:
-        table = np.asarray(value, float)
-    except (TypeError, ValueError):
-        raise InputError(key, type(value).__name__, "numbers, one row for each run") from None
-    if table.ndim != 2 or table.shape[1] not in widths:
-        raise InputError(
-            key, table.shape, f"shape (runs, {' or '.join(map(str, sorted(set(widths))))})"
-        )
-    bad = np.flatnonzero(~np.isfinite(table).all(axis=1))
-    if len(bad):
-        raise InputError(f"{key}[{bad[0]}]", table[bad[0]].tolist(), "finite numbers")
-    return table
-
-
-def _start(scenario: Scenario, base: Setup, value: Any) -> np.ndarray | None:
-    if value is None:
-        return None
-    n = base.array.n
-    table = _table(_START, value, (n, n + len(set(scenario.array.failed_cmgs))))
-    delta = objects.working(scenario.array, np.radians(table), n)
-    limits = base.array.angle_limits
-    out = np.flatnonzero(
-        ((delta < limits[:, 0] - 1e-12) | (delta > limits[:, 1] + 1e-12)).any(axis=1)
-    )
-    if len(out):
-        raise InputError(
-            f"{_START}[{out[0]}]", table[out[0]].tolist(), "angles within array.angle_limits_deg"
-        )
-    return delta
-
-
-def _command(base: Setup, value: Any) -> np.ndarray | None:
-    return None if value is None else _table(_COMMAND, value, (base.array.m,))
 
 
 def _setups(
@@ -148,9 +110,14 @@ def groups(setups: Sequence[Setup]) -> list[np.ndarray]:
     return [np.array(r) for r in rows.values()]
 
 
+def compiled(setup: Setup) -> bool:
+    """Return whether a setup can run in a kernel."""
+    return setup.law.traceable and setup.integrator != "dop853"
+
+
 def _simulated(
-    base: Setup, setups: Any, delta: Any, hdot: Any, options: Mapping[str, Any]
+    base: Setup, setups: Any, arrays: Mapping[str, Any], options: Mapping[str, Any]
 ) -> BatchResult:
-    if base.law.traceable:
-        return run_batch(base, setups=setups, delta=delta, hdot=hdot, **options)
-    return merge.one_by_one(base, setups, delta, hdot, options.get("progress"))
+    if compiled(base):
+        return run_batch(base, setups=setups, **arrays, **options)
+    return merge.one_by_one(base, setups, arrays, options.get("progress"))

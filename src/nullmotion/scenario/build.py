@@ -9,8 +9,9 @@ import numpy as np
 
 from nullmotion import metrics
 from nullmotion.array import CmgArray
+from nullmotion.errors import InputError
 from nullmotion.metrics.base import Metric
-from nullmotion.scenario import objects, plant, profile
+from nullmotion.scenario import attitude, metric_keys, objects, plant, profile, start, vehicle
 from nullmotion.scenario.checks import WHOLE
 from nullmotion.scenario.scenario import Scenario
 from nullmotion.scenario.schema import StopSection
@@ -22,10 +23,12 @@ def setup(scenario: Scenario, metric_names: tuple[str, ...] | None = None) -> Se
 
     Args:
         scenario: A checked scenario.
-        metric_names: What is measured; all registered metrics by default.
+        metric_names: What is measured; by default all registered metrics, those of an
+            attitude only with a spacecraft.
 
     Raises:
         UnsupportedArrayError: When the law cannot steer the array.
+        InputError: For a metric of an attitude when there is no spacecraft.
     """
     array = objects.array(scenario.array)
     dt = scenario.simulation.dt_s
@@ -35,7 +38,7 @@ def setup(scenario: Scenario, metric_names: tuple[str, ...] | None = None) -> Se
     return Setup(
         array=array,
         law=objects.law(scenario.law),
-        delta=objects.start(scenario.array, scenario.initial.gimbal_deg, array.n),
+        delta=start.angles(scenario.array, scenario.initial, array),
         hdot=_command(scenario, array, steps, period),
         plant=real,
         encoder_bias=bias,
@@ -45,14 +48,26 @@ def setup(scenario: Scenario, metric_names: tuple[str, ...] | None = None) -> Se
         delay_steps=_steps(scenario.law.delay_s, dt),
         integrator=scenario.simulation.integrator,
         stop=stops(scenario.stop),
-        metrics=tuple(metric(name) for name in metric_names or metrics.names()),
+        metrics=_metrics(scenario, metric_names),
+        **_surroundings(scenario, array, np.arange(0, steps, period) * dt),
     )
 
 
-def metric(name: str) -> Metric:
-    """Return a registered metric with its defaults."""
-    made: Metric = metrics.get(name)()
+def metric(name: str, **parameters: Any) -> Metric:
+    """Return a registered metric; parameters that are not given keep their defaults."""
+    made: Metric = metrics.get(name)(**parameters)
     return made
+
+
+def _metrics(scenario: Scenario, names: tuple[str, ...] | None) -> tuple[Metric, ...]:
+    """Return what is measured, the tolerance of settling as the mission has it."""
+    body = scenario.mission.kind == "attitude"
+    settling = {"tolerance": math.radians(scenario.mission.settle_tolerance_deg)}
+    chosen = names or metrics.applicable(body)
+    for name in chosen:
+        if metrics.get(name).needs_body and not body:
+            raise InputError("metrics", name, 'one that needs no mission.kind = "attitude"')
+    return tuple(metric(n, **(settling if n == "settling_time_s" else {})) for n in chosen)
 
 
 def step_count(scenario: Scenario) -> int:
@@ -68,9 +83,8 @@ def _steps(time: float, dt: float) -> int:
 def stops(section: StopSection) -> tuple[Stop, ...]:
     """Return the stop conditions, by the metric's name."""
     return tuple(
-        Stop(metric(key.rpartition("_")[0]), value, key.endswith("_below"))
-        for key, value in section.model_dump(exclude_unset=True).items()
-        if value is not None
+        Stop(metric_keys.metric(key)(), value, key.endswith("_below"))
+        for key, value in metric_keys.limits(section).items()
     )
 
 
@@ -87,7 +101,28 @@ def _plant(scenario: Scenario, array: CmgArray) -> tuple[CmgArray | None, np.nda
 
 def _command(scenario: Scenario, array: CmgArray, steps: int, period: int) -> np.ndarray:
     mission: Any = scenario.mission
+    if mission.kind != "momentum-rate":
+        return np.zeros(array.m)
     if mission.profile is None:
         return np.array(mission.hdot_Nm, float)
     table = profile.load(scenario.source, mission.profile, array.m)
     return table.at(np.arange(0, steps, period) * scenario.simulation.dt_s)
+
+
+def _surroundings(scenario: Scenario, array: CmgArray, times: np.ndarray) -> dict[str, Any]:
+    """Return what is around the array: servo and faults, target, spacecraft and the rest."""
+    found: dict[str, Any] = {
+        "events": tuple(vehicle.event(event, scenario.array) for event in scenario.events)
+    }
+    if scenario.servo is not None:
+        found["servo"] = vehicle.servo(scenario.servo, scenario.array, array.n)
+    if scenario.mission.kind == "momentum":
+        found["momentum_target"] = np.array(scenario.mission.momentum_Nms, float)
+    for name in ("spacecraft", "controller", "sensors", "disturbance", "desaturation"):
+        section = getattr(scenario, name)
+        if section is not None:
+            found[name] = getattr(vehicle, name)(section)
+    if scenario.mission.kind == "attitude":
+        found["target"] = attitude.target(scenario)
+        found["reference"] = attitude.reference(scenario, found["spacecraft"].q_BN, times)
+    return found

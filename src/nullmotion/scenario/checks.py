@@ -9,8 +9,14 @@ import numpy as np
 
 from nullmotion.array import CmgArray
 from nullmotion.errors import InputError
-from nullmotion.scenario import keys, objects, profile
-from nullmotion.scenario.problems import MISSING
+from nullmotion.scenario import (
+    mission_checks,
+    objects,
+    requirements,
+    spacecraft_checks,
+    start,
+)
+from nullmotion.scenario.construction import add_construction
 from nullmotion.scenario.scenario import Scenario
 from nullmotion.scenario.toml import Path
 from nullmotion.scenario.validate import Validator
@@ -24,13 +30,15 @@ def check(scenario: Scenario, validator: Validator) -> None:
     array = _check_array(scenario, validator)
     if array is not None:
         _check_start(scenario, array, validator)
-        _check_mission(scenario, array, validator)
+        mission_checks.check(scenario, array, validator)
+        spacecraft_checks.check(scenario, array, validator)
+    requirements.check(scenario, validator)
     _check_times(scenario, validator)
     for path, section in [(("law",), scenario.law), *_cases(scenario)]:
         try:
             objects.law(section)
         except InputError as error:
-            _add_construction(validator, path, error)
+            add_construction(validator, path, error)
 
 
 def _cases(scenario: Scenario) -> list[tuple[Path, Any]]:
@@ -56,7 +64,7 @@ def _check_array(scenario: Scenario, v: Validator) -> CmgArray | None:
     try:
         whole = objects.whole_array(section)
     except InputError as error:
-        _add_construction(v, ("array",), error)
+        add_construction(v, ("array",), error)
         return None
     except ValueError:  # lengths of wheel inertias and speeds
         v.add(
@@ -90,6 +98,7 @@ def _check_failures(scenario: Scenario, whole: CmgArray, v: Validator) -> CmgArr
 
 def _check_start(scenario: Scenario, array: CmgArray, v: Validator) -> None:
     section, angles = scenario.array, scenario.initial.gimbal_deg
+    momentum = scenario.initial.momentum_Nms
     total = array.n + len(set(section.failed_cmgs))
     if angles is not None and len(angles) not in (array.n, total):
         v.add(
@@ -98,38 +107,30 @@ def _check_start(scenario: Scenario, array: CmgArray, v: Validator) -> None:
             f"{_counts(array.n, total)} numbers, one for each CMG (this has {len(angles)})",
         )
         return
-    start = objects.start(section, angles, array.n)
+    if momentum is not None:
+        _check_momentum(scenario, array, v)
+        return
+    delta = objects.start(section, angles, array.n)
     low, high = array.angle_limits[:, 0], array.angle_limits[:, 1]
-    if np.any((start < low - 1e-12) | (start > high + 1e-12)):
-        value = np.round(np.degrees(start), 6).tolist() if angles is None else angles
+    if np.any((delta < low - 1e-12) | (delta > high + 1e-12)):
+        value = np.round(np.degrees(delta), 6).tolist() if angles is None else angles
         v.add(("initial", "gimbal_deg"), value, "angles within array.angle_limits_deg")
+
+
+def _check_momentum(scenario: Scenario, array: CmgArray, v: Validator) -> None:
+    path, initial = ("initial", "momentum_Nms"), scenario.initial
+    assert initial.momentum_Nms is not None
+    if initial.gimbal_deg is not None:
+        v.add(path, initial.momentum_Nms, "give one of gimbal_deg and momentum_Nms")
+    elif mission_checks.torque_dimensions(v, path, initial.momentum_Nms, array.m):
+        try:
+            start.angles(scenario.array, initial, array)
+        except InputError as error:
+            v.add(path, error.value, error.allowed)
 
 
 def _counts(n: int, total: int) -> str:
     return str(n) if n == total else f"{n} or {total}"
-
-
-def _check_mission(scenario: Scenario, array: CmgArray, v: Validator) -> None:
-    mission = scenario.mission
-    if (mission.hdot_Nm is None) == (mission.profile is None):
-        both = "exactly one of hdot_Nm and profile"
-        v.add(
-            ("mission",),
-            MISSING,
-            f"needs {both}" if mission.profile is None else f"takes {both}, not both",
-        )
-    elif mission.hdot_Nm is not None and len(mission.hdot_Nm) != array.m:
-        v.add(
-            ("mission", "hdot_Nm"),
-            mission.hdot_Nm,
-            f"{array.m} numbers, one for each torque dimension of the array "
-            f"(this has {len(mission.hdot_Nm)})",
-        )
-    elif mission.profile is not None:
-        try:
-            profile.load(scenario.source, mission.profile, array.m)
-        except profile.ProfileError as error:
-            v.add(("mission", "profile"), mission.profile, str(error))
 
 
 def _check_times(scenario: Scenario, v: Validator) -> None:
@@ -142,6 +143,10 @@ def _check_times(scenario: Scenario, v: Validator) -> None:
             times.dt_s,
             f"a step of which at most {MOST_STEPS} make up duration_s = {times.duration_s:g}",
         )
+    plan = scenario.plan
+    if plan is not None and plan.duration_s is not None and plan.duration_s > times.duration_s:
+        allowed = f"at most simulation.duration_s = {times.duration_s:g}"
+        v.add(("plan", "duration_s"), plan.duration_s, allowed)
     for key in ("period_s", "delay_s"):
         value = getattr(law, key)
         if value is not None and not is_multiple(
@@ -158,16 +163,3 @@ def is_multiple(value: float, step: float, least: int = 0) -> bool:
         and round(count) >= least
         and abs(count - round(count)) <= WHOLE * max(1.0, count)
     )
-
-
-def _add_construction(v: Validator, section: Path, error: InputError) -> None:
-    """Note what a layout, array or law refused, at the key that the value came from."""
-    head, _, tail = error.key.removeprefix("array.").removeprefix("law.").partition("[")
-    table = v.source.value(section)
-    names = {"h0": "wheel_speed_rpm"} if "wheel_speed_rpm" in table else {}
-    key = names.get(head) or keys.same_quantity(head, table)
-    if key is None:
-        v.add((*section, head), error.value, error.allowed)
-        return
-    row = f" ({head}[{tail} = {error.value})" if tail else ""
-    v.add((*section, key), table[key], error.allowed + row)

@@ -1,4 +1,4 @@
-"""A trajectory as named variables with units and attributes, whatever file they go to."""
+"""What tells how a run came about: attributes, parameters with defaults put in, versions."""
 
 from __future__ import annotations
 
@@ -7,106 +7,28 @@ import json
 import platform
 import sys
 from importlib.metadata import PackageNotFoundError, version
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
+from nullmotion.scenario import metric_keys, sections
 from nullmotion.scenario.scenario import Scenario
+from nullmotion.scenario.variables import CONVENTIONS, WITH_BODY
 from nullmotion.sim.trajectory import Trajectory
 
-CONVENTIONS = (
-    "SI units and radians; vectors in body frame B along torque_axes. CMG i (counted from 0) "
-    "has gimbal axis g_i, spin axis s_i at delta_i = 0, t_i = g_i x s_i, momentum "
-    "h_i = h0_i (s_i cos delta_i + t_i sin delta_i); A = dh/d(delta). hdot is the commanded rate "
-    "of the array's momentum, torque the achieved A delta_dot; the vehicle gets "
-    "-A delta_dot - omega x h. Rates act from their row's time to the next row's; the last row "
-    "has none. Singularity measures are those of A over the mean momentum of the working CMGs."
+_SECTIONS = (
+    "array",
+    "plant",
+    "initial",
+    "mission",
+    "simulation",
+    "spacecraft",
+    "servo",
+    "sensors",
+    "disturbance",
+    "desaturation",
+    "plan",
 )
-
-
-class Variable(NamedTuple):
-    """A named array."""
-
-    name: str
-    dims: tuple[str, ...]
-    values: np.ndarray
-    units: str
-    long_name: str
-
-
-_CMG, _AXIS = ("time", "cmg"), ("time", "torque_axis")
-_HISTORY = (
-    ("delta", _CMG, "rad", "gimbal angle (true)"),
-    ("rates", _CMG, "rad s-1", "gimbal rate applied"),
-    ("rates_asked", _CMG, "rad s-1", "gimbal rate asked by the law, before the rate limit"),
-    ("hdot", _AXIS, "N m", "commanded rate of momentum"),
-    ("torque", _AXIS, "N m", "achieved rate of momentum A delta_dot"),
-    ("momentum", _AXIS, "N m s", "momentum of the array"),
-    ("momentum_wanted", _AXIS, "N m s", "start momentum and integral of the command"),
-    ("impulse", _AXIS, "N m s", "integral of the achieved torque"),
-    (
-        "eram",
-        _CMG,
-        "1",
-        "effective residual angular momentum over the mean momentum (Mao 2019, Eq 28)",
-    ),
-)
-_MEASURES = {
-    "sigma_min": "least singular value of A over the mean momentum",
-    "sqrt_det_AAT": "manipulability sqrt(det(A A^T)) of A over the mean momentum",
-    "condition_number": "ratio of the extreme singular values of A",
-    "residual_momentum": "sum of the effective residual momenta over the mean momentum",
-    "momentum_state": "singularity state estimation sse (Mao 2019)",
-}
-
-
-def variables(trajectory: Trajectory) -> list[Variable]:
-    """Return everything that a run holds over time, and its geometry."""
-    found = [Variable("time", ("time",), trajectory.t, "s", "time since the start")]
-    for name, dims, units, text in _HISTORY:
-        found.append(Variable(name, dims, np.asarray(getattr(trajectory, name)), units, text))
-    for name, values in trajectory.measures.items():
-        found.append(
-            Variable(
-                name,
-                ("time",),
-                np.asarray(values),
-                "1",
-                _MEASURES.get(name, name.replace("_", " ")),
-            )
-        )
-    return [*found, *_geometry(trajectory)]
-
-
-def _geometry(trajectory: Trajectory) -> list[Variable]:
-    array, real = trajectory.setup.array, trajectory.setup.true_array
-    axes, one = ("cmg", "body_axis"), ("cmg",)
-    return [
-        Variable(
-            "torque_axes",
-            ("torque_axis", "body_axis"),
-            np.asarray(array.torque_axes),
-            "1",
-            "directions of torque in B",
-        ),
-        Variable(
-            "gimbal_axes", axes, array.gimbal_axes, "1", "gimbal axes in B as the law knows them"
-        ),
-        Variable(
-            "spin_axes",
-            axes,
-            array.spin_axes,
-            "1",
-            "spin axes in B at delta = 0 as the law knows them",
-        ),
-        Variable("h0", one, array.h0, "N m s", "spin momentum as the law knows it"),
-        Variable("rate_limit", one, array.rate_limit, "rad s-1", "largest gimbal rate"),
-        Variable("true_gimbal_axes", axes, real.gimbal_axes, "1", "gimbal axes in B as they are"),
-        Variable(
-            "true_spin_axes", axes, real.spin_axes, "1", "spin axes in B at delta = 0 as they are"
-        ),
-        Variable("true_h0", one, real.h0, "N m s", "spin momentum as it is"),
-    ]
 
 
 def attributes(
@@ -118,7 +40,7 @@ def attributes(
         if scenario
         else f"{trajectory.setup.law.name} on {trajectory.setup.array.label}",
         "source": f"nullmotion {versions()['nullmotion']}",
-        "conventions": CONVENTIONS,
+        "conventions": CONVENTIONS + (WITH_BODY if trajectory.setup.spacecraft else ""),
         "law": trajectory.setup.law.name,
         "stop_reason": trajectory.stop_reason,
         "status": ", ".join(trajectory.status) or "ok",
@@ -146,12 +68,22 @@ def resolved(trajectory: Trajectory, scenario: Scenario | None) -> dict[str, Any
     found: dict[str, Any] = {"law": {"name": setup.law.name, **dataclasses.asdict(setup.law)}}
     if scenario is None:
         return found
-    for name in ("array", "plant", "initial", "mission", "simulation", "stop"):
+    for name in _SECTIONS:
         section = getattr(scenario, name)
         found[name] = None if section is None else section.model_dump()
+    for name, section in (("stop", scenario.stop), ("requirements", scenario.requirements)):
+        found[name] = {} if section is None else metric_keys.limits(section)
+    found["event"] = [event.model_dump() for event in scenario.events]
     found["array"] |= scenario.layout_parameters()
     found["law"] |= {"period_s": setup.period, "delay_s": scenario.law.delay_s}
     found["initial"] = {"gimbal_deg": np.degrees(setup.delta)}
+    if setup.spacecraft is not None and setup.controller is not None:
+        craft = {"inertia_kg_m2": setup.spacecraft.inertia, "q_BN": setup.spacecraft.q_BN}
+        found["spacecraft"] |= {**craft, "euler_321_deg": None}
+        found["controller"] = {
+            "name": setup.controller.name,
+            **sections.written(setup.controller),
+        }
     return found
 
 

@@ -7,8 +7,11 @@ from difflib import get_close_matches
 
 UNITS = {  # as written in keys: as written in messages
     "rad_s2": "rad/s2", "deg_s2": "deg/s2", "kg_m2": "kg m2", "rad_s": "rad/s", "deg_s": "deg/s",
-    "Nms": "N m s", "Nm": "N m", "rpm": "rpm", "deg": "deg", "rad": "rad", "ms": "ms", "s": "s",
+    "Nms": "N m s", "Nm": "N m", "rpm": "rpm", "deg": "deg", "rad": "rad", "ms": "ms",
+    "per_s": "1/s", "s": "s", "kHz": "kHz", "Hz": "Hz", "km": "km", "m": "m",
 }  # fmt: skip
+_UNWRITTEN = {"omega_BN_B": "rad/s"}
+_MOST = 60
 
 
 def split_unit(key: str) -> tuple[str, str]:
@@ -29,7 +32,10 @@ def hint(key: str, known: Iterable[str]) -> str:
     names = sorted(known)
     right = same_quantity(key, names)
     if right is not None:
-        return f"unknown key; it is written {right} ({split_unit(right)[1] or 'no unit'})"
+        unit = _UNWRITTEN.get(right) or split_unit(right)[1] or "no unit"
+        return f"unknown key; it is written {right} ({unit})"
     near = get_close_matches(key, names, n=3, cutoff=0.5)
     start = f"unknown key; did you mean {' or '.join(near)}? " if near else "unknown key; "
+    if near and len(names) > _MOST:
+        return start.strip()
     return f"{start}allowed: {', '.join(names)}" if names else "unknown key; there are none here"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -46,15 +46,23 @@ def _joined(columns: Sequence[np.ndarray], order: np.ndarray) -> np.ndarray:
 
 
 def one_by_one(
-    base: Setup, setups: Sequence[Setup] | None, delta: Any, hdot: Any, progress: Any
+    base: Setup,
+    setups: Sequence[Setup] | None,
+    arrays: Mapping[str, np.ndarray],
+    progress: Any,
 ) -> BatchResult:
     """Return the result of runs flown one after another (laws that cannot be traced)."""
-    count = len(next(x for x in (setups, delta, hdot) if x is not None))
+    count = len(next(x for x in (setups, *arrays.values()) if x is not None))
     runs = list(setups or [base] * count)
-    for key, table in (("delta", delta), ("hdot", hdot)):
-        if table is not None:
-            runs = [replace(setup, **{key: row}) for setup, row in zip(runs, table, strict=True)]
+    for key, table in arrays.items():
+        runs = [_with(setup, key, row) for setup, row in zip(runs, table, strict=True)]
     return gathered(run_each(runs, progress))
+
+
+def _with(setup: Setup, key: str, value: Any) -> Setup:
+    if setup.spacecraft is not None and key in ("q_BN", "omega_BN_B"):
+        return replace(setup, spacecraft=replace(setup.spacecraft, **{key: value}))
+    return replace(setup, **{key: value})
 
 
 def gathered(runs: Sequence[Trajectory]) -> BatchResult:

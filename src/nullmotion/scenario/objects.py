@@ -30,6 +30,8 @@ def whole_array(section: ArraySection) -> CmgArray:
         own["rate_limit"] = np.radians(section.rate_limit_deg_s)
     if section.angle_limits_deg is not None:
         own["angle_limits"] = np.radians(section.angle_limits_deg)
+    if section.momentum_bias_Nms is not None:
+        own["momentum_bias"] = np.array(section.momentum_bias_Nms, float)
     if isinstance(section, CustomArraySection):
         return CmgArray(np.array(section.gimbal_axes), np.array(section.spin_axes), **own)
     return layout(section).array(**own)

@@ -1,8 +1,9 @@
-"""Torque profiles: a CSV with the header ``t_s,x,y,z``."""
+"""Tables over time in CSV files; torque profiles, with the header ``t_s,x,y,z``."""
 
 from __future__ import annotations
 
 import csv
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,6 +40,20 @@ def load(source: Source, name: str, m: int) -> Profile:
     Raises:
         ProfileError: For a file that is missing or not such a table.
     """
+    found, _ = table(source, name, [["t_s", *AXES[:m]]])
+    return Profile(found[:, 0], found[:, 1:])
+
+
+def table(
+    source: Source, name: str, headers: Sequence[Sequence[str]]
+) -> tuple[np.ndarray, list[int]]:
+    """Return the numbers of a CSV file with one of the headers, and the line of each row.
+
+    The first column is time and increases.
+
+    Raises:
+        ProfileError: For a file that is missing or not such a table.
+    """
     try:
         text = source.read(name)
     except UnicodeDecodeError:
@@ -50,16 +65,15 @@ def load(source: Source, name: str, m: int) -> Profile:
         for i, row in enumerate(csv.reader(text.splitlines()), 1)
         if any(c.strip() for c in row)
     ]
-    header = ["t_s", *AXES[:m]]
-    if not rows or [c.strip() for c in rows[0][1]] != header:
-        raise ProfileError(f"a CSV whose first line is {','.join(header)}")
-    table = np.array([_numbers(name, line, row, m + 1) for line, row in rows[1:]]).reshape(
-        -1, m + 1
-    )
-    if not len(table):
+    header = [c.strip() for c in rows[0][1]] if rows else []
+    if header not in [list(h) for h in headers]:
+        raise ProfileError(f"a CSV whose first line is {' or '.join(map(','.join, headers))}")
+    lines = [line for line, _ in rows[1:]]
+    if not lines:
         raise ProfileError(f"a CSV with at least one row below {','.join(header)}")
-    _check_times(name, [line for line, _ in rows[1:]], table[:, 0])
-    return Profile(table[:, 0], table[:, 1:])
+    found = np.array([_numbers(name, line, row, len(header)) for line, row in rows[1:]])
+    _check_times(name, lines, found[:, 0])
+    return found, lines
 
 
 def _numbers(name: str, line: int, row: list[str], count: int) -> list[float]:

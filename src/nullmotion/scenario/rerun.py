@@ -13,6 +13,7 @@ from nullmotion.scenario import dataset
 from nullmotion.scenario.scenario import Scenario, checked
 from nullmotion.scenario.source import Source
 from nullmotion.scenario.store import TRAJECTORY
+from nullmotion.scenario.variables import variables
 from nullmotion.sim.trajectory import Trajectory
 
 
@@ -76,7 +77,7 @@ def read(directory: str | Path) -> Stored:
 def verdict(stored: Stored, again: Trajectory) -> str:
     """Return in words whether a run came out the same, and if not, what may be the reason."""
     worst, where = 0.0, ""
-    for variable in dataset.variables(again):
+    for variable in variables(again):
         old = stored.variables.get(variable.name)
         if old is None or old.shape != variable.values.shape:
             return f"differs: {variable.name} has another shape{_reasons(stored, again)}"

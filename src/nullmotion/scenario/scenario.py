@@ -15,8 +15,19 @@ from nullmotion.scenario.schema import (
     LawSection,
     MissionSection,
     PlantSection,
+    RequirementsSection,
     SimulationSection,
     StopSection,
+)
+from nullmotion.scenario.schema_spacecraft import (
+    ControllerSection,
+    DesaturationSection,
+    DisturbanceSection,
+    EventSection,
+    PlanSection,
+    SensorsSection,
+    ServoSection,
+    SpacecraftSection,
 )
 from nullmotion.scenario.source import Source
 from nullmotion.scenario.validate import Validator
@@ -32,6 +43,15 @@ class Scenario:
         plant: None when the real array is as the law is told.
         stop: Thresholds at which the run ends.
         cases: What `compare` runs beside the law.
+        spacecraft: The body that carries the array; None unless the mission is an attitude.
+        controller: What makes the command from the attitude, likewise.
+        servo: None when gimbals follow at once.
+        sensors: None when rate and attitude are measured exactly.
+        disturbance: None when no torque comes from outside.
+        desaturation: None when nothing takes momentum off the array.
+        events: Faults.
+        plan: How null motion is planned; None unless the file has such a section.
+        requirements: Limits of the summary's numbers, likewise.
     """
 
     source: Source
@@ -44,6 +64,15 @@ class Scenario:
     simulation: SimulationSection
     stop: StopSection
     cases: tuple[CaseSection, ...]
+    spacecraft: SpacecraftSection | None = None
+    controller: ControllerSection | None = None
+    servo: ServoSection | None = None
+    sensors: SensorsSection | None = None
+    disturbance: DisturbanceSection | None = None
+    desaturation: DesaturationSection | None = None
+    events: tuple[EventSection, ...] = ()
+    plan: PlanSection | None = None
+    requirements: RequirementsSection | None = None
 
     @property
     def name(self) -> str:
@@ -79,6 +108,18 @@ class Scenario:
         return sections.written(objects.layout(self.array))
 
 
+_OPTIONAL = (
+    "spacecraft",
+    "controller",
+    "servo",
+    "sensors",
+    "disturbance",
+    "desaturation",
+    "plan",
+    "requirements",
+)
+
+
 def checked(source: Source) -> Scenario:
     """Return the scenario of a source.
 
@@ -101,6 +142,8 @@ def checked(source: Source) -> Scenario:
         found["simulation"],
         found["stop"],
         tuple(found["compare"]),
+        events=tuple(found["event"]),
+        **{name: found.get(name) for name in _OPTIONAL},
     )
     check(scenario, validator)
     validator.raise_problems()

@@ -1,14 +1,17 @@
 """The sections of a scenario file as pydantic models.
 
 Keys and units are those of the file. What depends on a name (the parameters of a
-layout or a law, the metrics to stop at) is added by `nullmotion.scenario.sections`.
+layout, a law or a controller, the metrics to stop at) is added by
+`nullmotion.scenario.sections`. The spacecraft's sections are in `schema_spacecraft`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
+from pydantic_core import PydanticCustomError
 
 Positive = Annotated[float, Field(gt=0)]
 NotNegative = Annotated[float, Field(ge=0)]
@@ -22,7 +25,19 @@ def _is_rows(value: Any) -> str:
     return "rows" if isinstance(value, tuple) and value and isinstance(value[0], tuple) else "list"
 
 
-def _one_or_each(number: Any) -> Any:
+def sized(count: int) -> Callable[[Any], Any]:
+    """Return a check that a list has so many numbers."""
+
+    def check(value: Any) -> Any:
+        if isinstance(value, tuple) and len(value) != count:
+            given = {"count": count, "given": len(value)}
+            raise PydanticCustomError("size", "{count} numbers (this has {given})", given)
+        return value
+
+    return check
+
+
+def one_or_each(number: Any) -> Any:
     """Return the type of one number or a list with one for each CMG."""
     listed = Annotated[tuple[number, ...], Field(min_length=1), Tag("list")]
     return Annotated[Annotated[number, Tag("number")] | listed, Discriminator(_is_list)]
@@ -30,6 +45,9 @@ def _one_or_each(number: Any) -> Any:
 
 Pair = tuple[float, float]
 Vector = tuple[float, float, float]
+Three = Annotated[Vector, BeforeValidator(sized(3))]
+Four = Annotated[tuple[float, float, float, float], BeforeValidator(sized(4))]
+Some = Annotated[tuple[float, ...], Field(min_length=1)]
 Limits = Annotated[
     Annotated[Pair, Tag("list")] | Annotated[tuple[Pair, ...], Tag("rows")], Discriminator(_is_rows)
 ]
@@ -56,14 +74,15 @@ class ArraySection(Section):
     """``[array]``: a layout by name with its parameters, momenta, limits, failures."""
 
     layout: str
-    h0_Nms: _one_or_each(NotNegative) = 1.0  # type: ignore[valid-type]
-    wheel_inertia_kg_m2: _one_or_each(Positive) | None = None  # type: ignore[valid-type]
-    wheel_speed_rpm: _one_or_each(NotNegative) | None = None  # type: ignore[valid-type]
-    rate_limit_deg_s: _one_or_each(Positive) | None = None  # type: ignore[valid-type]
+    h0_Nms: one_or_each(NotNegative) = 1.0  # type: ignore[valid-type]
+    wheel_inertia_kg_m2: one_or_each(Positive) | None = None  # type: ignore[valid-type]
+    wheel_speed_rpm: one_or_each(NotNegative) | None = None  # type: ignore[valid-type]
+    rate_limit_deg_s: one_or_each(Positive) | None = None  # type: ignore[valid-type]
     rate_limit_mode: Literal["scale", "clip"] = "scale"
     angle_limits_deg: Limits | None = None
+    momentum_bias_Nms: Three | None = None
     failed_cmgs: tuple[Annotated[int, Field(ge=0)], ...] = ()
-    frozen_at_deg: _one_or_each(float) | None = None  # type: ignore[valid-type]
+    frozen_at_deg: one_or_each(float) | None = None  # type: ignore[valid-type]
 
 
 class CustomArraySection(ArraySection):
@@ -85,7 +104,8 @@ class PlantSection(Section):
 class InitialSection(Section):
     """``[initial]``: the state at the start; the layout's home unless given."""
 
-    gimbal_deg: Annotated[tuple[float, ...], Field(min_length=1)] | None = None
+    gimbal_deg: Some | None = None
+    momentum_Nms: Some | None = None
 
 
 class NamedLaw(Section):
@@ -108,15 +128,24 @@ class CaseSection(NamedLaw):
 
 
 class MissionSection(Section):
-    """``[mission]``: what is asked of the array."""
+    """``[mission]``: what is asked: a rate of momentum, a momentum, or an attitude."""
 
-    kind: Literal["momentum-rate"] = "momentum-rate"
-    hdot_Nm: Annotated[tuple[float, ...], Field(min_length=1)] | None = None
+    kind: Literal["momentum-rate", "momentum", "attitude"] = "momentum-rate"
+    hdot_Nm: Some | None = None
+    momentum_Nms: Some | None = None
+    target_q_BN: Four | None = None
+    target_euler_321_deg: Three | None = None
     profile: str | None = None
+    slew_time_s: Positive | None = None
+    settle_tolerance_deg: Annotated[float, Field(gt=0, le=180)] = 0.1
 
 
 class StopSection(Section):
     """``[simulation.stop]``: thresholds at which the run ends."""
+
+
+class RequirementsSection(Section):
+    """``[requirements]``: limits that numbers of the summary have to keep."""
 
 
 class SimulationSection(Section):
@@ -124,4 +153,4 @@ class SimulationSection(Section):
 
     dt_s: Positive = 0.01
     duration_s: Positive
-    integrator: Literal["euler", "rk4", "semi-implicit-euler"] = "rk4"
+    integrator: Literal["euler", "rk4", "semi-implicit-euler", "dop853"] = "rk4"

@@ -10,14 +10,15 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from pydantic import Field, create_model
+from pydantic import BeforeValidator, Field, create_model
 
-from nullmotion import laws, metrics
+from nullmotion import laws
 from nullmotion.array import layouts
-from nullmotion.scenario import schema
+from nullmotion.scenario import schema, schema_spacecraft
+from nullmotion.scenario.metric_keys import requirements_model, stop_model
+from nullmotion.spacecraft import controllers
 
 CUSTOM = "custom"
-SECTIONS = ("scenario", "array", "plant", "initial", "law", "mission", "simulation", "compare")
 
 
 def layout_names() -> list[str]:
@@ -42,16 +43,9 @@ def case_model(name: str) -> type[schema.CaseSection]:
     return _extended(schema.CaseSection, laws.get(name))  # type: ignore[arg-type]
 
 
-def stop_model() -> type[schema.StopSection]:
-    """Return the model of ``[simulation.stop]``: a threshold for each metric of a state."""
-    return _stop_model(tuple(n for n in metrics.names() if not metrics.get(n).needs_rates))
-
-
-@cache
-def _stop_model(names: tuple[str, ...]) -> type[schema.StopSection]:
-    keys = [f"{name}_{side}" for name in names for side in ("below", "above")]
-    fields: Any = dict.fromkeys(keys, (float | None, None))
-    return create_model("Stop", __base__=schema.StopSection, **fields)
+def controller_model(name: str) -> type[schema_spacecraft.ControllerSection]:
+    """Return the model of ``[controller]`` for a controller."""
+    return _extended(schema_spacecraft.ControllerSection, controllers.get(name))  # type: ignore[arg-type]
 
 
 def file_key(field: dataclasses.Field[Any]) -> str:
@@ -60,7 +54,7 @@ def file_key(field: dataclasses.Field[Any]) -> str:
 
 
 def parameters(section: schema.Section, cls: type[Any]) -> dict[str, Any]:
-    """Return the values that a file gives for the fields of a layout or law, in SI and rad."""
+    """Return the values that a file gives for the fields of a layout, law or controller, in SI."""
     return {
         f.name: _from_file(f, getattr(section, file_key(f)))
         for f in dataclasses.fields(cls)
@@ -69,7 +63,7 @@ def parameters(section: schema.Section, cls: type[Any]) -> dict[str, Any]:
 
 
 def written(record: Any) -> dict[str, Any]:
-    """Return the fields of a layout or law as files have them."""
+    """Return the fields of a layout, law or controller as files have them."""
     found = {}
     for f in dataclasses.fields(record):
         value = getattr(record, f.name)
@@ -103,7 +97,12 @@ def _file_type(hint: Any) -> Any:
     if hint in (float, int, bool, str) or hint is type(None) or origin is typing.Literal:
         return hint
     if origin is tuple:
-        return tuple[tuple(a if a is ... else _file_type(a) for a in typing.get_args(hint))]  # type: ignore[misc]
+        parts = typing.get_args(hint)
+        found: Any = tuple[tuple(a if a is ... else _file_type(a) for a in parts)]  # type: ignore[misc]
+        counted = ... not in parts
+        return (
+            typing.Annotated[found, BeforeValidator(schema.sized(len(parts)))] if counted else found
+        )
     if origin in (typing.Union, types.UnionType):
         return typing.Union[tuple(_file_type(a) for a in typing.get_args(hint))]  # noqa: UP007
     return Any
@@ -122,7 +121,7 @@ def model_at(data: Mapping[str, Any], path: tuple[str | int, ...]) -> type[schem
     """Return the model of the section at a path; None where there is none.
 
     Raises:
-        UnknownNameError: If the section names a layout or law that does not exist.
+        UnknownNameError: If the section names a layout, law or controller that does not exist.
     """
     found: Any = data
     for part in path:
@@ -131,11 +130,17 @@ def model_at(data: Mapping[str, Any], path: tuple[str | int, ...]) -> type[schem
         case ("array",):
             return array_model(str(found["layout"])) if "layout" in found else schema.ArraySection
         case ("law",):
-            return law_model(str(found.get("name", ""))) if "name" in found else schema.LawSection
+            return law_model(str(found["name"])) if "name" in found else schema.LawSection
         case ("compare", "case", int()):
-            return case_model(str(found.get("name", ""))) if "name" in found else schema.CaseSection
+            return case_model(str(found["name"])) if "name" in found else schema.CaseSection
+        case ("controller",) if "name" in found:
+            return controller_model(str(found["name"]))
+        case ("event", int()):
+            return schema_spacecraft.EventSection
         case ("simulation", "stop"):
             return stop_model()
+        case ("requirements",):
+            return requirements_model()
         case (str(name),):
             return _PLAIN.get(name)
     return None
@@ -147,4 +152,13 @@ _PLAIN: dict[str, type[schema.Section]] = {
     "initial": schema.InitialSection,
     "mission": schema.MissionSection,
     "simulation": schema.SimulationSection,
+    "spacecraft": schema_spacecraft.SpacecraftSection,
+    "controller": schema_spacecraft.ControllerSection,
+    "servo": schema_spacecraft.ServoSection,
+    "sensors": schema_spacecraft.SensorsSection,
+    "disturbance": schema_spacecraft.DisturbanceSection,
+    "desaturation": schema_spacecraft.DesaturationSection,
+    "plan": schema_spacecraft.PlanSection,
 }
+LISTS = ("event",)
+SECTIONS = (*_PLAIN, "array", "law", "requirements", *LISTS, "compare")

@@ -53,8 +53,9 @@ def simulate_batch(
         progress: Called with the finished share.
         history: Keep every so many steps of every run (0: none).
         **values: Values by key, runs along the leading axis: ``gimbal_deg=starts`` (runs, n),
-            ``hdot_Nm=directions`` (runs, m), ``skew_deg=angles`` (runs,), and with the
-            section for a key that stands in several: ``**{"law.sigma_c": ...}``.
+            ``hdot_Nm=directions`` (runs, m), ``target_q_BN=attitudes`` (runs, 4),
+            ``skew_deg=angles`` (runs,), and with the section for a key that stands in
+            several, ``**{"law.sigma_c": ...}``, or a fault: ``**{"event.0.at_s": ...}``.
 
     Raises:
         InputError: For an unknown or ambiguous key, lengths that differ, impossible values.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -13,6 +14,8 @@ from typing import Any
 from nullmotion.errors import InputError
 from nullmotion.scenario import toml
 from nullmotion.scenario.problems import MISSING, Problem, ScenarioError
+
+_INDEX = re.compile(r"\[(\d+)\]")
 
 
 @dataclass(frozen=True)
@@ -68,12 +71,25 @@ class Source:
         *sections, last = key.split(".")
         table: Any = data
         for section in sections:
-            table = table.setdefault(section, {})
-            if not isinstance(table, dict):
+            if isinstance(table, list):
+                table = self._item(table, section, key, value)
+            else:
+                table = table.setdefault(section, {})
+            if not isinstance(table, (dict, list)):
                 raise ScenarioError(
                     [Problem(key, value, f"{section!r} is not a section", self.origin)]
                 )
-        table[last] = value
+        if isinstance(table, list):
+            allowed = f"{key}.<key>, or the whole list as {'.'.join(sections)}"
+            raise ScenarioError([Problem(key, value, allowed, self.origin)])
+        table[last] = _lists(value)
+
+    def _item(self, items: list[Any], index: str, key: str, value: Any) -> Any:
+        """Return one section of a list of sections, such as the 0 of ``event.0.at_s``."""
+        if index.isdigit() and int(index) < len(items):
+            return items[int(index)]
+        allowed = f"{index!r} is not one of the {len(items)} in the list, counted from 0"
+        raise ScenarioError([Problem(key, value, allowed, self.origin)])
 
     @cached_property
     def _lines(self) -> dict[toml.Path, int]:
@@ -112,7 +128,8 @@ class Source:
 
     def over(self, values: Mapping[str, Any], origin: str = "--set") -> Source:
         """Return the source with more values set over it."""
-        return replace(self, overrides={**self.overrides, **values}, origin=origin)
+        named = {_INDEX.sub(r".\1", key): value for key, value in values.items()}
+        return replace(self, overrides={**self.overrides, **named}, origin=origin)
 
     def effective_text(self) -> str:
         """Return TOML that says it all: the text itself unless values were set over it."""
@@ -147,6 +164,13 @@ def parse_value(text: str, key: str) -> Any:
 def _parse(text: str) -> dict[str, Any]:
     """Return a document; shared by the many scenarios that differ in overrides only."""
     return tomllib.loads(text)
+
+
+def _lists(value: Any) -> Any:
+    """Return a copy in which tuples are lists."""
+    if isinstance(value, dict):
+        return {k: _lists(v) for k, v in value.items()}
+    return [_lists(v) for v in value] if isinstance(value, (list, tuple)) else value
 
 
 def _tuples(value: Any) -> Any:

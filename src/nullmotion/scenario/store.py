@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from nullmotion.scenario import dataset
+from nullmotion.scenario import dataset, requirements
 from nullmotion.scenario.files import replacing
 from nullmotion.scenario.scenario import Scenario
+from nullmotion.scenario.variables import LABELS, UNITS, variables
 from nullmotion.sim.trajectory import Trajectory
 
 TRAJECTORY, SUMMARY, TABLE, REPORT = (
@@ -62,6 +63,8 @@ def summary(trajectory: Trajectory, scenario: Scenario) -> dict[str, Any]:
     found = {"scenario": scenario.name, "title": scenario.title, **trajectory.summary()}
     found["parameters"] = dataset.resolved(trajectory, scenario)["law"]
     found["seed"] = scenario.plant.seed if scenario.plant else None
+    found["requirements"] = requirements.evaluate(scenario, found)
+    found["requirements_passed"] = requirements.passed(found["requirements"])
     result: dict[str, Any] = dataset.plain(found | {"versions": dataset.versions()})
     return result
 
@@ -72,7 +75,7 @@ def write_netcdf(trajectory: Trajectory, path: Path, attributes: dict[str, str])
 
     with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
         file.setncatts(attributes)
-        for variable in dataset.variables(trajectory):
+        for variable in variables(trajectory):
             for name, size in zip(variable.dims, variable.values.shape, strict=True):
                 if name not in file.dimensions:
                     file.createDimension(name, size)
@@ -87,25 +90,15 @@ def write_netcdf(trajectory: Trajectory, path: Path, attributes: dict[str, str])
 def write_csv(trajectory: Trajectory, path: Path) -> None:
     """Write the histories as a table, one row a step, units in the column names."""
     columns: dict[str, np.ndarray] = {}
-    for variable in dataset.variables(trajectory):
+    known: dict[str, Iterable[object]] = {**LABELS, "torque_axis": _axis_labels(trajectory)}
+    for variable in variables(trajectory):
         if variable.dims[0] != "time":
             continue
-        unit = {
-            "1": "",
-            "s": "_s",
-            "rad": "_rad",
-            "rad s-1": "_rad_s",
-            "N m": "_Nm",
-            "N m s": "_Nms",
-        }[variable.units]
+        unit = UNITS[variable.units]
         if variable.values.ndim == 1:
             columns["t_s" if variable.name == "time" else variable.name + unit] = variable.values
             continue
-        labels = (
-            _axis_labels(trajectory)
-            if variable.dims[1] == "torque_axis"
-            else range(variable.values.shape[1])
-        )
+        labels = known.get(variable.dims[1], range(variable.values.shape[1]))
         for label, column in zip(labels, variable.values.T, strict=True):
             columns[f"{variable.name}_{label}{unit}"] = column
     table = np.stack(list(columns.values()), axis=1)
@@ -123,7 +116,7 @@ def to_xarray(trajectory: Trajectory, scenario: Scenario | None = None) -> Any:
     """Return a run as an `xarray.Dataset` with units and conventions."""
     import xarray
 
-    found = dataset.variables(trajectory)
+    found = variables(trajectory)
     data = {v.name: (v.dims, v.values, {"units": v.units, "long_name": v.long_name}) for v in found}
     return xarray.Dataset(data, attrs=dataset.attributes(trajectory, scenario)).set_coords(
         ["torque_axes"]

@@ -13,10 +13,11 @@ from nullmotion.scenario import keys, schema, sections
 from nullmotion.scenario.problems import MISSING, Problem, ScenarioError
 from nullmotion.scenario.source import Source
 from nullmotion.scenario.toml import Path
+from nullmotion.spacecraft import controllers
 
-LATER_KINDS = ("attitude", "momentum", "startup")
-_LATER_SECTIONS = ("spacecraft", "controller", "plan")
 _NEEDED = ("array", "law", "mission", "simulation")
+_ATTITUDE_NEEDS = ("spacecraft", "controller")
+_ATTITUDE_ONLY = (*_ATTITUDE_NEEDS, "sensors", "disturbance", "desaturation")
 
 _ALLOWED = {
     "float_type": "a number",
@@ -60,8 +61,6 @@ class Validator:
     def sections(self) -> dict[str, Any]:
         """Return the checked sections by name; those with problems are left out."""
         data = self.source.data
-        if self._later_kind(data):
-            return {}
         for key in data:
             if key not in sections.SECTIONS:
                 self.add(
@@ -70,30 +69,35 @@ class Validator:
         for key in _NEEDED:
             if key not in data:
                 self.add((key,), MISSING, "this section is missing")
+        self._fit_to_mission(data)
+        several = ("compare", *sections.LISTS)
         found = {
             name: self._section((name,))
             for name in sections.SECTIONS
-            if name != "compare" and name in data
+            if name not in several and name in data
         }
         found["compare"] = self._cases(data)
+        found["event"] = self._listed(("event",), data.get("event", ()))
         found["stop"] = self._stop(data)
         return found
 
-    def _later_kind(self, data: Mapping[str, Any]) -> bool:
+    def _fit_to_mission(self, data: Mapping[str, Any]) -> None:
+        """Note sections that the kind of mission needs, or has no use for."""
         mission = data.get("mission")
-        kind = mission.get("kind") if isinstance(mission, dict) else None
-        later = [key for key in _LATER_SECTIONS if key in data]
-        if kind in LATER_KINDS:
-            self.add(
-                ("mission", "kind"), kind, 'this version of nullmotion flies "momentum-rate" only'
-            )
-        for key in later:
-            self.add(
-                (key,),
-                MISSING,
-                'this version of nullmotion has no such section; it flies "momentum-rate" only',
-            )
-        return bool(later) or kind in LATER_KINDS
+        if not isinstance(mission, dict):
+            return
+        kind = mission.get("kind", "momentum-rate")
+        if kind == "attitude":
+            for key in _ATTITUDE_NEEDS:
+                if key not in data:
+                    allowed = 'this section is missing; a mission of kind "attitude" needs it'
+                    self.add((key,), MISSING, allowed)
+        elif kind in ("momentum-rate", "momentum"):
+            extra = [key for key in data if key in _ATTITUDE_ONLY]
+            if extra:
+                names = " and ".join(f"[{key}]" for key in extra)
+                allowed = f'{names} only with mission.kind = "attitude" (this is "{kind}")'
+                self.add((extra[0],), MISSING, allowed)
 
     def _cases(self, data: Mapping[str, Any]) -> list[Any]:
         compare = data.get("compare", {})
@@ -103,11 +107,14 @@ class Validator:
         for key in compare:
             if key != "case":
                 self.add(("compare", key), compare[key], keys.hint(key, ["case"]))
-        cases = compare.get("case", ())
-        if not isinstance(cases, tuple):
-            self.add(("compare", "case"), cases, "[[compare.case]] sections, in double brackets")
+        return self._listed(("compare", "case"), compare.get("case", ()))
+
+    def _listed(self, path: Path, items: Any) -> list[Any]:
+        """Return the checked sections of a list of sections."""
+        if not isinstance(items, tuple):
+            self.add(path, items, f"[[{_dotted(path)}]] sections, in double brackets")
             return []
-        return [self._section(("compare", "case", i)) for i in range(len(cases))]
+        return [self._section((*path, i)) for i in range(len(items))]
 
     def _stop(self, data: Mapping[str, Any]) -> Any:
         simulation = data.get("simulation")
@@ -138,8 +145,9 @@ class Validator:
         if not isinstance(value, str):
             self.add((*path, key), value, "a text in quotes")
             return
-        known = sections.layout_names() if key == "layout" else laws.names()
-        self.add((*path, key), value, UnknownNameError(error.kind, value, known).allowed)
+        known = {"array": sections.layout_names, "controller": controllers.names}
+        names = known.get(str(path[0]), laws.names)()
+        self.add((*path, key), value, UnknownNameError(error.kind, value, names).allowed)
 
     def _collect(self, section: Path, error: ValidationError) -> None:
         """Turn pydantic's errors into problems; the branches of a union become one."""

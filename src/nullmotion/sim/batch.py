@@ -188,6 +188,7 @@ def structure(setup: Setup) -> Any:
         setup.integrator,
         setup.metrics,
         setup.hdot.shape,
+        setup.dt,  # sums over time are made of counts of steps
     )
     table = setup.table.tobytes() if setup.scheduled else b""
     stops = tuple((s.metric, s.below) for s in setup.stop)

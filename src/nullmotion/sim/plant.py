@@ -29,7 +29,6 @@ def drive(setup: Setup, k: Any, s: RunState, p: Parameters) -> RunState:
     )
     return s._replace(
         rates=moved.mean(p.dt),
-        speed=moved.rate,
         acceleration=moved.acceleration,
         motor=moved.torque,
         reading=reading[1] if reading else s.reading,
@@ -37,7 +36,7 @@ def drive(setup: Setup, k: Any, s: RunState, p: Parameters) -> RunState:
 
 
 def _turning(array: Any, s: RunState) -> Any:
-    """Return omega . c_i for each CMG (c_i: column of A): the gyroscopic torque about its gimbal."""
+    """Return omega . c_i for each CMG (c_i: column of A), the gyroscopic torque on its gimbal."""
     if isinstance(s.omega, tuple):
         return np.zeros(array.n)
     return (array.torque_axes @ s.omega) @ array.jacobian(s.delta)
@@ -47,7 +46,10 @@ def motion_of(s: RunState, p: Parameters) -> Motion:
     """Return the motion that `drive` found."""
     if p.servo is None:
         return Motion(s.rates, None, s.rates, s.motor)
-    return Motion(s.speed, s.acceleration, s.speed + p.dt * s.acceleration, s.motor)
+    start = s.speed
+    if p.true_array.has_angle_limits:  # a gimbal that meets its end stop loses rate at once
+        start = s.rates - 0.5 * p.dt * s.acceleration
+    return Motion(start, s.acceleration, start + p.dt * s.acceleration, s.motor)
 
 
 def advanced(setup: Setup, k: Any, s: RunState, p: Parameters) -> dict[str, Any]:
@@ -59,15 +61,27 @@ def advanced(setup: Setup, k: Any, s: RunState, p: Parameters) -> dict[str, Any]
     if setup.spacecraft is None or p.spacecraft is None:
         return found | {"impulse": s.impulse + _impulse(setup, s, p, moved, t)}
     vehicle = dynamics.Vehicle(
-        p.spacecraft, p.true_array, p.servo, p.events, p.disturbance, p.desaturation
+        p.spacecraft, p.true_array, p.servo, p.events, p.disturbance, p.desaturation, t
     )
     step = dynamics.INTEGRATORS[setup.integrator]
-    body = step(vehicle, dynamics.Body(s.q, s.omega, s.impulse), s.delta, moved, t, p.dt)
+    start = dynamics.Body(s.q, _struck(s, p, moved), s.impulse)
+    body = step(vehicle, start, s.delta, moved, t, p.dt)
     return found | {
         "q": rotation.normalised(body.q),
         "omega": body.omega,
         "impulse": body.impulse,
     }
+
+
+def _struck(s: RunState, p: Parameters, moved: Motion) -> Any:
+    """Return the body rate after gimbals met their end stops, which pass their momentum on."""
+    servo, array = p.servo, p.true_array
+    if servo is None or p.spacecraft is None:
+        return s.omega
+    if not (array.has_angle_limits and servo.has("inertia")):
+        return s.omega
+    given = (servo.inertia * (s.speed - moved.rate)) @ array.gimbal_axes
+    return s.omega + p.spacecraft.inverse_inertia @ given
 
 
 def _impulse(setup: Setup, s: RunState, p: Parameters, moved: Motion, t: Any) -> Any:

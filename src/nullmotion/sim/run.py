@@ -13,8 +13,8 @@ from nullmotion.compile import llvm
 from nullmotion.compile.kernel import LoopKernel
 from nullmotion.compile.loop import Loop, run_on_host
 from nullmotion.errors import InputError, MemoryLimitError, TraceError
-from nullmotion.sim.setup import Setup
 from nullmotion.metrics.base import PLAIN
+from nullmotion.sim.setup import Setup
 from nullmotion.sim.stages import loop, reductions
 from nullmotion.sim.state import Outcome, Record
 from nullmotion.sim.trajectory import Trajectory
@@ -63,12 +63,14 @@ def run(
 
 
 def schedule(setup: Setup) -> np.ndarray:
-    """Return the command for every sample of the law, the last row held on."""
+    """Return the command for every sample of the law, the last row held on, at rest."""
     if not setup.scheduled:
         return np.zeros((1, 0))
-    samples = setup.steps // setup.period_steps + 1
-    rows = np.minimum(np.arange(samples), len(setup.table) - 1)
-    return np.ascontiguousarray(setup.table[rows])
+    samples = np.arange(setup.steps // setup.period_steps + 1)
+    table = np.ascontiguousarray(setup.table[np.minimum(samples, len(setup.table) - 1)])
+    if setup.reference is not None:
+        table[samples >= len(setup.table), 4:] = 0.0
+    return table
 
 
 def check_history(setup: Setup, runs: int, decimate: int) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -74,7 +74,7 @@ class Setup:
         sensors: Errors of measured rate and attitude.
         disturbance: Torque on the body from outside.
         desaturation: Torque from outside that takes momentum off the array.
-        events: Faults.
+        events: Faults; each begins with the first step that starts at or after its time.
 
     Raises:
         UnsupportedArrayError: When the law cannot steer the array.
@@ -126,14 +126,23 @@ class Setup:
         if self.momentum_target is not None:
             wanted = _finite("momentum_target", self.momentum_target, (self.array.m,))
             put(self, "momentum_target", wanted)
+        put(self, "events", tuple(_on_a_step(event, self.dt) for event in self.events))
         for event in self.events:
             if not 0 <= event.cmg < self.array.n:
                 raise InputError("event.cmg", event.cmg, f"from 0 to {self.array.n - 1}")
+        if self.servo is not None:
+            self._check_servo(self.servo)
         for metric in (*self.metrics, *(s.metric for s in self.stop)):
             if metric.needs_body and self.spacecraft is None:
                 raise InputError("metrics", metric.name, "a metric that needs no spacecraft")
         if self.spacecraft is not None:
             self._check_attitude()
+
+    def _check_servo(self, servo: Servo) -> None:
+        for key, value in vars(servo).items():
+            if np.ndim(value) == 1 and len(value) != self.array.n:
+                allowed = f"one number or {self.array.n}"
+                raise InputError(f"servo.{key}", value.tolist(), allowed)
 
     def _check_attitude(self) -> None:
         if self.array.m != 3:
@@ -172,6 +181,13 @@ class Setup:
     def period(self) -> float:
         """Time between two samples of the law [s]."""
         return self.dt * self.period_steps
+
+
+def _on_a_step(event: Event, dt: float) -> Event:
+    """Return an event that begins where a step does."""
+    if not np.isfinite(event.at):
+        return event
+    return replace(event, at=float(np.ceil(event.at / dt - 1e-6) + 0.0) * dt)
 
 
 def _finite(key: str, value: object, shape: tuple[int, ...]) -> np.ndarray:

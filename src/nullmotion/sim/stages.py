@@ -34,9 +34,7 @@ def passes(setup: Setup, recording: bool) -> int:
     return setup.steps + (recording or bool(setup.stop or setup.metrics))
 
 
-def loop(
-    setup: Setup, varying: tuple[bool, ...] | None = None, *, recording: bool = False
-) -> Loop:
+def loop(setup: Setup, varying: tuple[bool, ...] | None = None, *, recording: bool = False) -> Loop:
     """Return a setup's loop.
 
     Args:

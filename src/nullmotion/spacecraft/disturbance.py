@@ -9,6 +9,7 @@ import numpy as np
 
 from nullmotion import linalg, ops, rotation
 from nullmotion.errors import InputError
+from nullmotion.spacecraft.body import checked_vector
 
 EARTH_MU = 3.986004418e14  # m^3/s^2
 EARTH_RADIUS = 6378137.0  # m
@@ -29,6 +30,11 @@ class Orbit:
     inclination: Any = 0.0
     ascending_node: Any = 0.0
     argument_of_latitude: Any = 0.0
+
+    def __post_init__(self) -> None:
+        """Check that every value is a number."""
+        for key in ("rate", "inclination", "ascending_node", "argument_of_latitude"):
+            _check(self, f"orbit.{key}", "a finite number")
 
     @staticmethod
     def at_altitude(altitude: float, **angles: float) -> Orbit:
@@ -67,6 +73,14 @@ class Disturbance:
     phase: Any = 0.0
     orbit: Orbit | None = None
 
+    def __post_init__(self) -> None:
+        """Check shapes and signs."""
+        for key in ("constant", "amplitude"):
+            value = checked_vector(f"disturbance.{key}", getattr(self, key))
+            object.__setattr__(self, key, value)
+        _check(self, "disturbance.frequency", "a finite number from 0", least=0.0)
+        _check(self, "disturbance.phase", "a finite number")
+
     def torque(self, t: Any, q_BN: Any, inertia: Any) -> Any:
         """Return the torque at a time and attitude [N m], (3,)."""
         total = self.constant + ops.sin(2.0 * np.pi * self.frequency * t + self.phase) * (
@@ -85,7 +99,7 @@ class Desaturation:
     While the array's momentum is above `threshold`: T = -gain h, at most `torque_limit`.
 
     Args:
-        torque_limit: Largest torque [N m].
+        torque_limit: Largest torque [N m]; infinite for none.
         gain: Torque per momentum [1/s].
         threshold: |h| above which it works [N m s].
     """
@@ -94,9 +108,26 @@ class Desaturation:
     gain: Any = 0.1
     threshold: Any = 0.0
 
+    def __post_init__(self) -> None:
+        """Check signs."""
+        if not self.torque_limit > 0:
+            raise InputError("desaturation.torque_limit", self.torque_limit, "above 0")
+        object.__setattr__(self, "torque_limit", float(self.torque_limit))
+        _check(self, "desaturation.gain", "a finite number above 0", least=5e-324)
+        _check(self, "desaturation.threshold", "a finite number from 0", least=0.0)
+
     def torque(self, momentum: Any) -> Any:
         """Return the torque for the array's momentum in B [N m], (3,)."""
         size = linalg.norm(momentum)
         safe = ops.where(ops.less(1e-12, size), size, 1.0)
         wanted = ops.minimum(self.gain * size, self.torque_limit)
         return momentum * ops.where(ops.less(self.threshold, size), -wanted / safe, 0.0)
+
+
+def _check(record: Any, key: str, allowed: str, least: float = -np.inf) -> None:
+    """Make a field a float, or refuse it unless it is finite and at least a value."""
+    field = key.rpartition(".")[2]
+    value = float(getattr(record, field))
+    if not (np.isfinite(value) and value >= least):
+        raise InputError(key, value, allowed)
+    object.__setattr__(record, field, value)

@@ -50,6 +50,7 @@ class Vehicle(NamedTuple):
     events: faults.Events
     disturbance: Disturbance | None
     desaturation: Desaturation | None
+    start: Any  # time of the step's start [s]
 
     def slope(self, body: Body, delta: Any, motion: Motion, t: Any, since: Any) -> Slope:
         """Return the derivatives at a time t, ``since`` the start of the step."""
@@ -65,7 +66,8 @@ class Vehicle(NamedTuple):
         if craft.momentum_coupling:
             momentum = momentum + array_momentum
         if faults.of_kind(self.events, "spin-down"):
-            reaction = reaction + faults.momentum_loss(self.array, self.events, t, delta) @ basis
+            lost = faults.momentum_loss(self.array, self.events, t, delta, self.start)
+            reaction = reaction + lost @ basis
         if self.servo is not None and self.servo.has("inertia"):
             momentum = momentum + (self.servo.inertia * rates) @ array.gimbal_axes
             if motion.acceleration is not None:

@@ -25,13 +25,16 @@ def as_it_is(array: CmgArray, events: Events, t: Any) -> CmgArray:
     return array.altered(h0=array.h0 * _left(spinning, array.n, t)) if spinning else array
 
 
-def momentum_loss(array: CmgArray, events: Events, t: Any, delta: Any) -> Any:
-    """Return sum_i dh0_i/dt (s_i cos delta_i + t_i sin delta_i) of wheels spinning down [N m]."""
+def momentum_loss(array: CmgArray, events: Events, t: Any, delta: Any, start: Any) -> Any:
+    """Return sum_i dh0_i/dt (s_i cos delta_i + t_i sin delta_i) of wheels spinning down [N m].
+
+    A wheel begins at the start of a step: the end of the step before knows nothing of it.
+    """
     spinning = of_kind(events, "spin-down")
     if not spinning:
         return np.zeros(array.m)
-    slope = _per_cmg(spinning, array.n, 0.0, lambda e, now: now + _slope(e, t))
-    momenta = array.altered(h0=array.h0 * slope).rotor_momenta(delta)
+    slopes = _slopes(spinning, array.n, t, start)
+    momenta = array.altered(h0=array.h0 * slopes).rotor_momenta(delta)
     return sum(momenta[i] for i in range(array.n))
 
 
@@ -104,8 +107,18 @@ def _share(event: Event, t: Any) -> Any:
     return event.final_fraction + (1.0 - event.final_fraction) * decay
 
 
-def _slope(event: Event, t: Any) -> Any:
-    """Return the derivative of `_share` [1/s]."""
+def _slopes(events: Events, n: int, t: Any, start: Any) -> Any:
+    """Return the derivative of `_left` [1/s] within a step: by the product rule."""
+    shares, slopes = [1.0] * n, [0.0] * n
+    for event in events:
+        i, share = event.cmg, _share(event, t)
+        slopes[i] = slopes[i] * share + shares[i] * _slope(event, t, start)
+        shares[i] = shares[i] * share
+    return np.array(slopes)
+
+
+def _slope(event: Event, t: Any, start: Any) -> Any:
+    """Return the derivative of `_share` [1/s] within a step."""
     decay = ops.exp(-ops.maximum(t - event.at, 0.0) / event.time_constant)
     slope = -(1.0 - event.final_fraction) / event.time_constant * decay
-    return ops.where(_begun(event, t), slope, 0.0)
+    return ops.where(_begun(event, start), slope, 0.0)

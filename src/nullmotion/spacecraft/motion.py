@@ -79,7 +79,10 @@ def driven(
         t: Time [s].
         dt: Step [s].
     """
-    measured = speed if not reading else (reading[1] - reading[0]) / dt
+    measured = speed
+    if reading:
+        stepped = ops.less(0.0, servo.encoder_resolution)
+        measured = ops.where(stepped, (reading[1] - reading[0]) / dt, speed)
     lag = ops.where(ops.less(0.0, servo.time_constant), servo.time_constant, 1.0)
     share = ops.where(ops.less(0.0, servo.time_constant), 1.0 - ops.exp(-dt / lag), 1.0)
     wanted = (command - measured) * (share / dt)
@@ -88,9 +91,11 @@ def driven(
     end = speed + dt * wanted
     if servo.has("torque_limit") or servo.has("friction"):
         torque = ops.clip(torque, -servo.torque_limit, servo.torque_limit)
-        free = speed + dt * (torque + turning) / servo.inertia
-        size = ops.maximum(ops.absolute(free) - dt * servo.friction / servo.inertia, 0.0)
-        end = ops.copysign(size, free)
+        heavy = ops.less(0.0, servo.inertia)  # in a batch some runs may have neither of the two
+        inertia = ops.where(heavy, servo.inertia, 1.0)
+        free = speed + dt * (torque + turning) / inertia
+        size = ops.maximum(ops.absolute(free) - dt * servo.friction / inertia, 0.0)
+        end = ops.where(heavy, ops.copysign(size, free), end)
     bound = ops.minimum(servo.rate_limit, faults.rate_bound(events, array.n, t))
     end = ops.clip(end, -bound, bound) * faults.stuck(events, array.n, t)
     return _stopped(array, delta, Motion(speed, (end - speed) / dt, end, torque), dt)

@@ -46,4 +46,6 @@ class Sensors:
     @property
     def noisy(self) -> bool:
         """Whether anything is drawn."""
-        return any(not isinstance(v, float) or v > 0 for v in (self.gyro_noise, self.attitude_noise))
+        return any(
+            not isinstance(v, float) or v > 0 for v in (self.gyro_noise, self.attitude_noise)
+        )

@@ -1,8 +1,10 @@
 "use strict";
 (() => {
   const { arrays, figures } = JSON.parse(document.getElementById("charts").textContent);
+  // The names of instants stand above the charts.
+  const named = Object.values(figures).some((f) => f.layout.annotations.some((a) => a.yref === "paper"));
   const BASE = {
-    margin: { l: 62, r: 12, t: 8, b: 44 },
+    margin: { l: 62, r: 12, t: named ? 24 : 8, b: 44 },
     font: { family: "system-ui, -apple-system, Segoe UI, Roboto, Arial, sans-serif", size: 12, color: "#1b1f24" },
     paper_bgcolor: "#fff", plot_bgcolor: "#fff",
     showlegend: false, hovermode: false,
@@ -123,7 +125,7 @@
     if (!Number.isFinite(v)) return "–";
     const size = Math.abs(v);
     const written = size !== 0 && (size < 1e-3 || size >= 1e5) ? v.toExponential(2) : String(+v.toPrecision(4));
-    return written.replace("-", "−");
+    return written.replaceAll("-", "−");
   };
 
   // Rates act from their row on, so the last row has none: there the one before still holds.
@@ -134,7 +136,9 @@
     return tidy(Math.abs(y[i]) < 1e-6 * size ? 0 : y[i]);
   }
 
+  // Where small values are noise; on a logarithmic axis they are not.
   function scale(chart) {
+    if (chart.figure.layout.yaxis.type === "log") return 0;
     chart.scale ??= chart.figure.traces.reduce((most, trace) =>
       array(trace.y).reduce((m, v) => (Number.isFinite(v) ? Math.max(m, Math.abs(v)) : m), most), 0);
     return chart.scale;

@@ -1,0 +1,102 @@
+"""Checks of the spacecraft, its servo, the torques from outside and the faults."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from nullmotion.array import CmgArray
+from nullmotion.errors import InputError
+from nullmotion.scenario import mission_checks, vehicle
+from nullmotion.scenario.construction import add_construction
+from nullmotion.scenario.scenario import Scenario
+from nullmotion.scenario.toml import Path
+from nullmotion.scenario.validate import Validator
+
+_ORBIT = ("inclination_deg", "ascending_node_deg", "argument_of_latitude_deg")
+_OF_KIND = {
+    "rate_limit_deg_s": "slow",
+    "time_constant_s": "spin-down",
+    "final_fraction": "spin-down",
+}
+
+
+def check(scenario: Scenario, array: CmgArray, v: Validator) -> None:
+    """Add to the validator what cannot be or does not fit together."""
+    craft, controller = scenario.spacecraft, scenario.controller
+    if craft is not None:
+        if craft.q_BN is not None and craft.euler_321_deg is not None:
+            allowed = "give one of q_BN and euler_321_deg: this is the same attitude twice"
+            v.add(("spacecraft", "q_BN"), craft.q_BN, allowed)
+        mission_checks.quaternion(v, ("spacecraft", "q_BN"), craft.q_BN)
+        inertia = craft.model_copy(update={"q_BN": None})
+        _construct(v, ("spacecraft",), lambda: vehicle.spacecraft(inertia))
+    if controller is not None:
+        _construct(v, ("controller",), lambda: vehicle.controller(controller))
+    _servo(scenario, array, v)
+    _disturbance(scenario, v)
+    for i in range(len(scenario.events)):
+        _event(scenario, array, i, v)
+
+
+def _construct(v: Validator, section: Path, make: Callable[[], Any]) -> None:
+    try:
+        make()
+    except InputError as error:
+        add_construction(v, section, error)
+
+
+def _servo(scenario: Scenario, array: CmgArray, v: Validator) -> None:
+    section = scenario.servo
+    if section is None:
+        return
+    total = array.n + len(set(scenario.array.failed_cmgs))
+    counts = sorted({array.n, total})
+    for key in type(section).model_fields:
+        value = getattr(section, key)
+        if isinstance(value, tuple) and len(value) not in counts:
+            words = " or ".join(map(str, counts))
+            allowed = f"one number or {words}, one for each CMG (this has {len(value)})"
+            v.add(("servo", key), value, allowed)
+    if section.gimbal_inertia_kg_m2 is None:
+        for key in ("motor_torque_limit_Nm", "friction_Nm"):
+            value = getattr(section, key)
+            if value is not None and np.any(np.asarray(value) != 0):
+                v.add(("servo", key), value, "only together with gimbal_inertia_kg_m2")
+
+
+def _disturbance(scenario: Scenario, v: Validator) -> None:
+    section = scenario.disturbance
+    if section is None:
+        return
+    needs = dict.fromkeys(_ORBIT, "altitude_km")
+    needs |= {"frequency_Hz": "amplitude_Nm", "phase_deg": "amplitude_Nm"}
+    needs |= {"amplitude_Nm": "frequency_Hz"}
+    why = {"altitude_km": ", which switches the gravity gradient on"}
+    for key, other in needs.items():
+        if section.given(key) and getattr(section, other) is None:
+            allowed = f"only together with {other}{why.get(other, '')}"
+            v.add(("disturbance", key), getattr(section, key), allowed)
+
+
+def _event(scenario: Scenario, array: CmgArray, i: int, v: Validator) -> None:
+    section, path = scenario.events[i], ("event", i)
+    failed = set(scenario.array.failed_cmgs)
+    total = array.n + len(failed)
+    if section.cmg >= total:
+        v.add((*path, "cmg"), section.cmg, f"from 0 to {total - 1}")
+    elif section.cmg in failed:
+        allowed = "a CMG that works (array.failed_cmgs has this one)"
+        v.add((*path, "cmg"), section.cmg, allowed)
+    duration = scenario.simulation.duration_s
+    if section.at_s > duration:
+        allowed = f"at most simulation.duration_s = {duration:g}"
+        v.add((*path, "at_s"), section.at_s, allowed)
+    for key, kind in _OF_KIND.items():
+        value = getattr(section, key)
+        if value is not None and section.kind != kind:
+            v.add((*path, key), value, f'only with kind = "{kind}" (this is "{section.kind}")')
+    if section.kind == "slow" and section.rate_limit_deg_s is None:
+        v.add((*path, "kind"), section.kind, "needs rate_limit_deg_s, what a slow gimbal can turn")
