@@ -11,6 +11,7 @@ import pytest
 import nullmotion as nm
 from nullmotion import sim
 from nullmotion.report import run_report
+from nullmotion.spacecraft import Event
 
 pytestmark = pytest.mark.browser
 
@@ -60,6 +61,30 @@ def test_it_draws_quietly_and_fits(browser, page_file, width):
     assert drawn > 20
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert said == []
+    page.close()
+
+
+@pytest.fixture(scope="module")
+def attitude_file(tmp_path_factory, slew) -> Path:
+    faults = (Event("stuck", 1, 1.0, detected_after=0.5), Event("slow", 2, 3.0, rate_limit=0.1))
+    required = {"name": "settling_time_s_below", "limit": 9.0, "value": None, "margin": None}
+    file = tmp_path_factory.mktemp("page") / "attitude.html"
+    run = slew(steps=100, events=faults)
+    return run_report(run, file, "Slew", "", [{**required, "passed": False}])
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_a_page_of_an_attitude_draws_quietly_and_fits(browser, attitude_file, width):
+    page, said, asked = opened(browser, attitude_file, width)
+    assert asked == [attitude_file.as_uri()]
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert said == []
+    error = page.locator("[data-chart=pointing_error]")
+    assert error.locator(".yaxislayer-above text").count() >= 2
+    inside = error.bounding_box()
+    for name in error.locator(".annotation-text").all():
+        box = name.bounding_box()
+        assert inside["x"] <= box["x"] and box["x"] + box["width"] <= inside["x"] + inside["width"]
     page.close()
 
 

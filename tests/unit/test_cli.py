@@ -81,6 +81,15 @@ def test_the_seed_reaches_the_plant(cli, tmp_path):
     assert finals[0]["final_momentum"] != finals[1]["final_momentum"]
 
 
+def test_the_seed_reaches_the_sensors(cli, tmp_path):
+    short = ("--set", "simulation.duration_s=0.2", "--set", "sensors.gyro_noise_deg_s=0.01")
+    for seed in (1, 2):
+        given = (*short, "--seed", str(seed), "--out", f"a{seed}")
+        assert cli("run", "attitude-slew", *given)[0] == 0
+    finals = [json.loads((tmp_path / f"a{s}" / "summary.json").read_text()) for s in (1, 2)]
+    assert finals[0]["final_momentum"] != finals[1]["final_momentum"]
+
+
 BAD = [
     (
         ["run", "elliptic-singularity", "--set", "law.name=vcbsa"],

@@ -34,8 +34,12 @@ Out = Annotated[
     typer.Option("--out", metavar="DIR", help="Folder for the results; out/NAME by default."),
 ]
 Seed = Annotated[
-    int | None, typer.Option("--seed", metavar="N", help="Seed of the plant's errors (plant.seed).")
+    int | None, typer.Option("--seed", metavar="N", help="Seed of plant errors and sensor noise.")
 ]
+
+
+_SEED = "--seed"
+_SEEDED = ("plant", "sensors")
 
 
 def values(settings: Sequence[str] | None, seed: int | None) -> dict[str, Any]:
@@ -43,7 +47,7 @@ def values(settings: Sequence[str] | None, seed: int | None) -> dict[str, Any]:
     from nullmotion.scenario.source import parse_setting
 
     found = dict(parse_setting(setting) for setting in settings or ())
-    return found if seed is None else found | {"plant.seed": seed}
+    return found if seed is None else found | {_SEED: seed}
 
 
 def writable(target: Path) -> Path:
@@ -71,6 +75,12 @@ def load(scenario: str, settings: Mapping[str, Any], law_names: Sequence[str] = 
     from nullmotion.scenario.scenario import checked
 
     source = find(scenario)
+    settings = dict(settings)
+    if _SEED in settings:
+        seed = settings.pop(_SEED)
+        named = {*source.data, *(key.partition(".")[0] for key in settings)}
+        drawn = [name for name in _SEEDED if name in named] or ["plant"]
+        settings |= {f"{name}.seed": seed for name in drawn}
     law = source.data.get("law")
     named = {**(law if isinstance(law, dict) else {}), "name": settings.get("law.name", _name(law))}
     if law_names and "law.name" not in settings and named["name"] not in law_names:

@@ -28,7 +28,8 @@ def paper(
     with screen.progress(f"Computing {name}") as progress:
         result = entry().run(target, progress, figures=figures)
     show(result)
-    typer.echo(f"Results in {target} (tables.json, tables.md)")
+    more = ", beyond.json" if result.beyond else ""
+    typer.echo(f"Results in {target} (tables.json, tables.md{more})")
 
 
 def show(result: PaperResult) -> None:

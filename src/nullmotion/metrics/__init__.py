@@ -10,7 +10,6 @@ names = registry.names
 get = registry.get
 
 
-
 def applicable(body: bool) -> list[str]:
     """Return the names of the metrics that a run has, with or without a spacecraft."""
     return [name for name in names() if body or not get(name).needs_body]

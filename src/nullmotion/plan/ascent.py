@@ -15,7 +15,7 @@ _FADE = 0.9, 0.95  # of the gradient's mean and mean square
 
 
 def ascend(
-    smooth: SmoothValue, knots: np.ndarray, visit: Callable[[int, np.ndarray], None]
+    smooth: SmoothValue, knots: np.ndarray, visit: Callable[[int, np.ndarray], bool]
 ) -> None:
     """Follow the gradient uphill from every course, within the knots' bounds of 1.
 
@@ -27,7 +27,8 @@ def ascend(
     Args:
         smooth: Gives the gradients.
         knots: Where to begin, (runs, depth).
-        visit: Called with the number of steps done and the courses reached.
+        visit: Called with the number of steps done and the courses reached; tells whether
+            to go on.
     """
     mean, square = np.zeros_like(knots), np.zeros_like(knots)
     for step in range(STEPS):
@@ -41,4 +42,5 @@ def ascend(
         usual = np.sqrt(square / (1.0 - _FADE[1] ** (step + 1)))
         move = np.divide(now, usual, out=np.zeros_like(now), where=usual > 0.0)
         knots = np.clip(knots + size * move, -1.0, 1.0)
-        visit(step + 1, knots)
+        if not visit(step + 1, knots):
+            break

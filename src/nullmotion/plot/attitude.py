@@ -30,7 +30,7 @@ def tolerance(run: Run) -> tuple[Level, ...]:
 def pointing_error(run: Run) -> Panel:
     """Angle between the attitude and the one asked for."""
     values = pointing_errors(run)
-    note = f"Below {LEAST_DEG:g} deg drawn there." if (values == LEAST_DEG).any() else ""
+    note = f"Errors below {LEAST_DEG:g} deg are drawn there." if (values == LEAST_DEG).any() else ""
     curve = Curve("pointing error", run.t, values, palette.colour(0), width=2.0)
     title, y_title = "Pointing error", "Error [deg]"
     return Panel("pointing_error", title, y_title, (curve,), tolerance(run), note, log=True)

@@ -23,7 +23,7 @@ class Varied(NamedTuple):
     note: str = ""
 
 
-_SHARE = "Share of command [%]"
+_SHARE, _GAP = "Share of command [%]", "No point where a run did not settle."
 VARIED_METRICS = (
     Varied("stopped_at_s", "Time to stop", "Time [s]"),
     Varied("final_momentum_reserve_Nms", "Momentum reserve at the end", "Reserve [N m s]"),
@@ -33,7 +33,9 @@ VARIED_METRICS = (
     Varied("min_sigma_min", "Least sigma_min", "sigma_min [-]"),
 )
 VARIED_ATTITUDE = (
-    Varied("settling_time_s", "Settling time", "Time [s]", note="No point where not settled."),
+    Varied(
+        "settling_time_s", "Settling time", "Time [s]", note="No point where a run did not settle."
+    ),
     Varied("final_pointing_error_deg", "Pointing error at the end", "Error [deg]", log=True),
     Varied("max_motor_torque_Nm", "Largest gimbal motor torque", "Torque [N m]"),
     Varied("rate_saturated_s", "Rate-saturated time", "Time [s]"),

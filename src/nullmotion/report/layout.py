@@ -11,6 +11,8 @@ import numpy as np
 from nullmotion.plot import palette
 from nullmotion.plot.view import Level, Mark, Panel
 
+_FEW = 1.5  # decades below which an axis needs ticks between them
+_TICKS = 6
 _AXIS = {
     "gridcolor": palette.GRID,
     "linecolor": palette.QUIET,
@@ -56,13 +58,13 @@ def _level_line(value: float) -> dict[str, Any]:
 
 
 def _logarithmic(panel: Panel) -> dict[str, Any]:
-    """Return what makes an ordinate logarithmic, with at most some seven ticks."""
-    values = np.concatenate([curve.y for curve in panel.curves])
+    """Return what makes an ordinate logarithmic, with about as many ticks as another has."""
+    values = np.concatenate([*(curve.y for curve in panel.curves), [v.value for v in panel.levels]])
     values = values[np.isfinite(values) & (values > 0)]
     low, high = (values.min(), values.max()) if len(values) else (1.0, 1.0)
-    decades = max(1, math.ceil(math.log10(high / low) / 6))
-    plainly = "none" if low > 1e-4 else "power"
-    return {"type": "log", "dtick": decades, "exponentformat": plainly}
+    axis: dict[str, Any] = {"type": "log", "exponentformat": "none" if low > 1e-4 else "e"}
+    decades = math.log10(high / low)
+    return axis if decades < _FEW else axis | {"dtick": max(1, math.ceil(decades / _TICKS))}
 
 
 def _mark_line(at: float) -> dict[str, Any]:

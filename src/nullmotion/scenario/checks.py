@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from nullmotion.array import CmgArray
-from nullmotion.errors import InputError
+from nullmotion.errors import InputError, UnknownNameError
 from nullmotion.scenario import (
     mission_checks,
     objects,
@@ -34,11 +34,23 @@ def check(scenario: Scenario, validator: Validator) -> None:
         spacecraft_checks.check(scenario, array, validator)
     requirements.check(scenario, validator)
     _check_times(scenario, validator)
+    _check_cost(scenario, validator)
     for path, section in [(("law",), scenario.law), *_cases(scenario)]:
         try:
             objects.law(section)
         except InputError as error:
             add_construction(validator, path, error)
+
+
+def _check_cost(scenario: Scenario, v: Validator) -> None:
+    if scenario.plan is None:
+        return
+    from nullmotion.plan import costs  # only where a plan is asked for: it brings the compiler
+
+    try:
+        costs.get(scenario.plan.cost)
+    except UnknownNameError as error:
+        v.add(("plan", "cost"), error.value, error.allowed)
 
 
 def _cases(scenario: Scenario) -> list[tuple[Path, Any]]:
