@@ -14,7 +14,6 @@ from nullmotion.sim import Setup, Trajectory, run
 from nullmotion.spacecraft import Event, Servo, Spacecraft, controllers
 
 SLOW = pytest.mark.slow
-BACKENDS = ["kernel", "python"]
 INERTIA = np.array([[12.0, -1.5, 0.8], [-1.5, 9.0, 1.1], [0.8, 1.1, 14.0]])
 KP, KW = 4.0, 12.0
 
@@ -32,33 +31,31 @@ class Tell(nm.Law):
         return np.array(list(told)), state
 
 
-def told(what: str, event: Event, backend: Any, **more: Any) -> Trajectory:
+def told(what: str, event: Event, **more: Any) -> Trajectory:
     """Return 1 s of a run at 0.01 s of gimbals that (almost) stand still."""
     array = nm.layouts.pyramid(h0=[1.0, 2.0, 3.0, 4.0], rate_limit=1e-9)
     delta = np.array([0.3, -0.4, 0.5, 0.9])
     return run(
         Setup(array, Tell(what), delta, np.zeros(3), steps=100, events=(event,), **more),
-        backend=backend,
+        backend="python",
     )
 
 
-@pytest.mark.parametrize("backend", BACKENDS)
-def test_a_stuck_cmg_is_known_when_it_is_found(backend: Any) -> None:
+def test_a_stuck_cmg_is_known_when_it_is_found() -> None:
     """Then it has no momentum to steer with, and what it holds is a bias."""
     event = Event("stuck", 2, 0.3, 0.25)
-    h0 = told("h0", event, backend).rates_asked[:100]
+    h0 = told("h0", event).rates_asked[:100]
     np.testing.assert_allclose(h0[:55], np.tile([1.0, 2.0, 3.0, 4.0], (55, 1)), rtol=1e-15)
     np.testing.assert_allclose(h0[55:], np.tile([1.0, 2.0, 0.0, 4.0], (45, 1)), rtol=1e-15)
-    bias = told("bias", event, backend).rates_asked[:100, :3]
+    bias = told("bias", event).rates_asked[:100, :3]
     skew = np.radians(54.73)  # the third CMG: s = -y, t = (cos skew, 0, sin skew)
     held = 3.0 * np.array([np.cos(skew) * np.sin(0.5), -np.cos(0.5), np.sin(skew) * np.sin(0.5)])
     np.testing.assert_allclose(bias[:55], 0.0, atol=1e-15)
     np.testing.assert_allclose(bias[55:], np.tile(held, (45, 1)), atol=1e-8)
 
 
-@pytest.mark.parametrize("backend", BACKENDS)
-def test_a_wheel_that_spins_down_is_known_when_it_is_found(backend: Any) -> None:
-    result = told("h0", Event("spin-down", 1, 0.2, 0.3, 0.0, 0.4, 0.25), backend)
+def test_a_wheel_that_spins_down_is_known_when_it_is_found() -> None:
+    result = told("h0", Event("spin-down", 1, 0.2, 0.3, 0.0, 0.4, 0.25))
     t = result.t[:100]
     left = 0.25 + 0.75 * np.exp(-(t - 0.2) / 0.4)
     expected = np.where(t > 0.495, 2.0 * left, 2.0)
@@ -68,27 +65,25 @@ def test_a_wheel_that_spins_down_is_known_when_it_is_found(backend: Any) -> None
     )
 
 
-@pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize(
     ("kind", "what"), [("stuck", "bias"), ("slow", "rate_limit"), ("spin-down", "h0")]
 )
-def test_what_is_never_found_is_never_known(kind: Any, what: str, backend: Any) -> None:
+def test_what_is_never_found_is_never_known(kind: Any, what: str) -> None:
     event = Event(kind, 2, 0.3, np.inf, 1e-10, 0.4, 0.5)
-    asked = told(what, event, backend).rates_asked[:100]
+    asked = told(what, event).rates_asked[:100]
     np.testing.assert_array_equal(asked, np.tile(asked[0], (100, 1)))
 
 
-@pytest.mark.parametrize("backend", BACKENDS)
-def test_a_slow_gimbal_turns_at_its_limit(backend: Any) -> None:
+def test_a_slow_gimbal_turns_at_its_limit() -> None:
     """Until it is found the others go on; then all are scaled to it."""
     array = nm.layouts.pyramid(rate_limit=1.0)
     event = Event("slow", 3, 0.3, 0.25, rate_limit=0.1)
     what = Setup(array, Tell("h0"), np.zeros(4), np.zeros(3), steps=100, events=(event,))
-    rates = run(what, backend=backend).rates[:100]
+    rates = run(what, backend="python").rates[:100]
     np.testing.assert_allclose(rates[:30], 1.0)
     np.testing.assert_allclose(rates[30:55], np.tile([1.0, 1.0, 1.0, 0.1], (25, 1)))
     np.testing.assert_allclose(rates[55:], 0.1)
-    limits = told("rate_limit", Event("slow", 3, 0.3, 0.25, 1e-10), backend).rates_asked[:100, 3]
+    limits = told("rate_limit", Event("slow", 3, 0.3, 0.25, 1e-10)).rates_asked[:100, 3]
     np.testing.assert_allclose(limits, np.where(np.arange(100) < 55, 1e-9, 1e-10))
 
 
@@ -136,7 +131,7 @@ def settled(result: Trajectory) -> float:
 
 @pytest.mark.parametrize("found", [0.5, np.inf])
 @pytest.mark.parametrize(
-    ("n", "cmg"), [(5, 0), (6, 3), *[pytest.param(n, 1, marks=SLOW) for n in (4, 5, 6)]]
+    ("n", "cmg"), [(5, 0), *[pytest.param(n, 3 if n == 6 else 1, marks=SLOW) for n in (4, 5, 6)]]
 )
 def test_a_gimbal_sticks_in_the_middle_of_a_slew(n: int, cmg: int, found: float) -> None:
     """The slew settles all the same.
@@ -190,7 +185,7 @@ def test_the_command_reckons_with_a_spin_down_once_found() -> None:
     assert np.abs(right - nominal)[300:350].max() > 1e-3
 
 
-@pytest.mark.parametrize("at", [1.0, 0.9951])
+@pytest.mark.parametrize("at", [0.9951, pytest.param(1.0, marks=SLOW)])
 def test_momentum_of_a_wheel_that_spins_down(at: float) -> None:
     """From the first step that starts at or after the time; the body gets the rest."""
     event = Event("spin-down", 2, at, np.inf, time_constant=5.0, final_fraction=0.2)
@@ -231,4 +226,4 @@ def test_an_event_refuses(key: str, values: dict[str, Any]) -> None:
 
 def test_a_setup_refuses_a_cmg_that_is_not_there() -> None:
     with pytest.raises(InputError, match=r"event\.cmg"):
-        told("h0", Event("stuck", 4, 1.0), "python")
+        told("h0", Event("stuck", 4, 1.0))

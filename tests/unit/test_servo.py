@@ -127,7 +127,7 @@ def test_friction_holds_a_gimbal() -> None:
     servo = Servo(time_constant=0.1, friction=0.01, inertia=0.05)
     threshold = 0.01 * DT / (0.05 * (1.0 - np.exp(-DT / 0.1)))
     assert threshold == pytest.approx(0.02, rel=0.06)
-    result = turned(servo, [0.0199, -0.99 * threshold, 1.01 * threshold, 0.5], steps=1000)
+    result = turned(servo, [0.0199, -0.99 * threshold, 1.01 * threshold, 0.5], steps=500)
     assert result.speed is not None
     assert (result.delta[:, :2] == 0).all()
     np.testing.assert_allclose(result.speed[-1, 2:], [0.01 * threshold, 0.5 - threshold], rtol=1e-9)
@@ -226,8 +226,7 @@ def test_an_encoder_leaves_a_limit_cycle() -> None:
     result = slew(Servo(LAG, encoder_resolution=q), 200.0)
     assert result.pointing_error is not None
     late = result.pointing_error[result.t > 100.0]
-    assert slew(Servo(LAG)).pointing_error[-1] < 1e-8 < 1e-6 < late.max()
-    assert late.max() < 4 * 1.0 * 0.5 * q * gain
+    assert 1e-6 < late.max() < 4 * 1.0 * 0.5 * q * gain
     before, after = late[: len(late) // 2].max(), late[len(late) // 2 :].max()
     assert 0.5 < after / before < 2.0  # it goes on
     assert 0 < np.ptp(result.delta[result.t > 150.0], axis=0).max() < q

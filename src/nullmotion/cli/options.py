@@ -78,8 +78,8 @@ def load(scenario: str, settings: Mapping[str, Any], law_names: Sequence[str] = 
     settings = dict(settings)
     if _SEED in settings:
         seed = settings.pop(_SEED)
-        named = {*source.data, *(key.partition(".")[0] for key in settings)}
-        drawn = [name for name in _SEEDED if name in named] or ["plant"]
+        present = {*source.data, *(key.partition(".")[0] for key in settings)}
+        drawn = [name for name in _SEEDED if name in present] or ["plant"]
         settings |= {f"{name}.seed": seed for name in drawn}
     law = source.data.get("law")
     named = {**(law if isinstance(law, dict) else {}), "name": settings.get("law.name", _name(law))}

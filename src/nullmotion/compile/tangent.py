@@ -14,6 +14,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import numpy as np
+
 from nullmotion import tree
 from nullmotion.compile.derivatives import FLAT, RULES, Tangent, Value
 from nullmotion.compile.places import tracing
@@ -102,13 +104,14 @@ class Recorded:
         for i, v, t in zip(self.inputs, values, tangents, strict=True):
             if i is not None:
                 value[i], change[i] = v, t
-        for i in self._live:
-            node = self.tape.nodes[i]
-            if node.op != "input":
-                operands = [value[a] for a in node.args]
-                value[i] = apply(node.op, *operands) if operands else node.value
-            if i in self._moving and i not in change:
-                change[i] = self._slope(i, value, change)
+        with np.errstate(all="ignore"):  # floats go through branches that are not taken, too
+            for i in self._live:
+                node = self.tape.nodes[i]
+                if node.op != "input":
+                    operands = [value[a] for a in node.args]
+                    value[i] = apply(node.op, *operands) if operands else node.value
+                if i in self._moving and i not in change:
+                    change[i] = self._slope(i, value, change)
         self._pass_on(value)
         return [value[i] for i in self.outputs], [change[i] for i in self.outputs]
 

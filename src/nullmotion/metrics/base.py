@@ -36,6 +36,7 @@ class Sample:
         omega_BN_B: Body rate in B [rad/s], (3,).
         q_BR: Attitude error against the reference, scalar part not negative, (4,).
         dt: Integration step [s].
+        turning: The array without its stuck CMGs; None if all turn.
     """
 
     array: CmgArray
@@ -53,6 +54,12 @@ class Sample:
     omega_BN_B: Any = None
     q_BR: Any = None
     dt: Any = None
+    turning: Any = None
+
+    @property
+    def working(self) -> CmgArray:
+        """The CMGs that turn: what measures of singularity look at."""
+        return self.array if self.turning is None else self.turning
 
     @cached_property
     def jacobian(self) -> Any:
@@ -71,8 +78,8 @@ class Sample:
 
     @cached_property
     def singular_values(self) -> Any:
-        """Singular values of A over the mean momentum, descending, (m,)."""
-        return linalg.svd(self.jacobian / self.array.mean_momentum).s
+        """Singular values of A over the mean momentum of the working CMGs, descending, (m,)."""
+        return linalg.svd(self.working.unit_jacobian(self.delta)).s
 
     @cached_property
     def command(self) -> Any:

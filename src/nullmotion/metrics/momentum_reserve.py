@@ -29,7 +29,7 @@ class MomentumReserve(Metric):
 
     def of(self, sample: Sample) -> Any:
         """Return the momentum at saturation less the momentum now [N m s]."""
-        array = sample.array
+        array = sample.working
         e = command_direction(array, sample.hdot)
         p = e - (array.gimbal_axes @ e)[:, None] * array.gimbal_axes
         length = ops.sqrt((p * p).sum(axis=1))

@@ -20,4 +20,4 @@ class MomentumState(Metric):
 
     def of(self, sample: Sample) -> Any:
         """Return sse along the commanded direction."""
-        return sse(sample.array, sample.delta, sample.hdot, sample.singular_values[-1])
+        return sse(sample.working, sample.delta, sample.hdot, sample.singular_values[-1])

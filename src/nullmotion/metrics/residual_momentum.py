@@ -20,4 +20,4 @@ class ResidualMomentum(Metric):
 
     def of(self, sample: Sample) -> Any:
         """Return rrss along the commanded direction."""
-        return rrss(sample.array, sample.delta, sample.hdot)
+        return rrss(sample.working, sample.delta, sample.hdot)

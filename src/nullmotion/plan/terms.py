@@ -20,7 +20,7 @@ class Term(Metric):
 
 def manipulability(sample: Sample, index: Index) -> Any:
     """Return sqrt(det(A A^T)) of A / mean momentum, or the determinant itself."""
-    A = sample.jacobian / sample.array.mean_momentum
+    A = sample.working.unit_jacobian(sample.delta)
     det = ops.maximum(linalg.det(A @ A.T), 0.0)
     return ops.sqrt(det) if index == "sqrt-det" else det
 

@@ -15,7 +15,6 @@ from nullmotion.plot.quantities import (
     motor_limits,
     of_attitude,
     rate_limits,
-    sigma_min_turning,
     steady_direction,
     torque_fractions,
 )
@@ -61,8 +60,6 @@ def sigma_min(cases: Sequence[Case]) -> Panel:
 
     curves = overlay(cases, series)
     note = f"Zero at a singular state; {NORMALISED}."
-    if any(sigma_min_turning(case.trajectory) is not None for _, case in shown(cases)):
-        note += " Without stuck CMGs."
     return Panel("sigma_min", "Least singular value", "sigma_min [-]", curves, note=note)
 
 

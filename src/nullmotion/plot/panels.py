@@ -15,7 +15,6 @@ from nullmotion.plot.quantities import (
     cmg_names,
     of_attitude,
     rate_limits,
-    sigma_min_turning,
     stop_level,
     torque_fractions,
 )
@@ -75,10 +74,6 @@ def measures(run: Run) -> Panel:
     """Distance from singularity: least singular value and manipulability."""
     columns = {n: run.measures[n] for n in ("sigma_min", "sqrt_det_AAT") if n in run.measures}
     note = f"Zero at a singular state; {NORMALISED}."
-    turning = sigma_min_turning(run)
-    if turning is not None:
-        columns["sigma_min without stuck CMGs"] = turning
-        note += " The other measures count a stuck CMG as if it turned."
     curves = bundle(run.t, np.stack([*columns.values()], 1), [*columns]) if columns else ()
     levels = (Level(SINGULAR, f"singular below {SINGULAR:g}"),) * of_attitude(run)
     return Panel("measures", "Singularity measures", "Measure [-]", curves, levels, note)

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from nullmotion.plot.view import Run
-from nullmotion.spacecraft import faults
 
 STUCK_FRACTION = 0.02  # of the command; an escaping law gives at least some of it
 STUCK_SHARE = 0.1  # of the whole command: shorter pauses at the end are not called stuck
@@ -121,23 +120,9 @@ def final_error_deg(run: Run) -> float:
     return float(np.degrees(run.pointing_error[-1]) if last is None else last)
 
 
-def sigma_min_turning(run: Run) -> np.ndarray | None:
-    """Return sigma_min of the CMGs that are not stuck, over the same momentum; None if all turn."""
-    stuck = faults.of_kind(getattr(run.setup, "events", ()), "stuck")
-    if not any(event.at < run.t[-1] for event in stuck):
-        return None
-    array = run.setup.array if run.setup.plant is None else run.setup.plant
-    turns = np.array([faults.stuck(stuck, array.n, float(t)) for t in run.t])
-    A = array.jacobian(np.nan_to_num(run.delta)) / array.mean_momentum * turns[:, None, :]
-    least = np.linalg.eigvalsh(A @ A.transpose(0, 2, 1))[:, 0]
-    known = np.isfinite(run.delta).all(axis=1)
-    return np.where(known, np.sqrt(np.maximum(least, 0.0)), np.nan)
-
-
 def sigma_min(run: Run) -> np.ndarray | None:
-    """Return sigma_min of the CMGs that are not stuck, (k,); None if it is not known."""
-    turning = sigma_min_turning(run)
-    return run.measures.get("sigma_min") if turning is None else turning
+    """Return sigma_min of the CMGs that turn, (k,); None if it is not known."""
+    return run.measures.get("sigma_min")
 
 
 def stop_level(run: Run, metric: str) -> float | None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from nullmotion.plot.events import told
-from nullmotion.plot.quantities import SINGULAR, USED_UP, motor_limits, sigma_min, sigma_min_turning
+from nullmotion.plot.quantities import SINGULAR, USED_UP, motor_limits, sigma_min
 from nullmotion.plot.view import Run
 from nullmotion.report.requirements import name, tally
 from nullmotion.report.wording import number, percent
@@ -35,13 +35,12 @@ def _singular(run: Run) -> Iterator[str]:
     if values is None or not np.isfinite(values).any():
         return
     at = int(np.nanargmin(values))
-    of = "sigma_min" if sigma_min_turning(run) is None else "sigma_min without stuck CMGs"
     if values[at] >= SINGULAR:
-        yield f"No singular encounter: {of} is never below {number(values[at], 3)}"
+        yield f"No singular encounter: sigma_min is never below {number(values[at], 3)}"
         return
     spent = _time(run, values < SINGULAR)
     low = f"down to {number(values[at], 3)} at {number(run.t[at])} s"
-    yield f"Singular encounter: {of} {low}, below {number(SINGULAR)} for {number(spent)} s"
+    yield f"Singular encounter: sigma_min {low}, below {number(SINGULAR)} for {number(spent)} s"
 
 
 def _saturated(run: Run) -> Iterator[str]:

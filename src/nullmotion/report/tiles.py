@@ -10,7 +10,6 @@ import numpy as np
 from nullmotion.plot.quantities import (
     rate_limits,
     sigma_min,
-    sigma_min_turning,
     steady_direction,
     torque_fractions,
 )
@@ -84,8 +83,7 @@ def least_sigma(run: Run) -> Tile | None:
     if values is None or not np.isfinite(values).any():
         return None
     at = int(np.nanargmin(values))
-    remark = "0 is singular" if sigma_min_turning(run) is None else "without stuck CMGs"
-    note = f"at {number(run.t[at])} s; {remark}"
+    note = f"at {number(run.t[at])} s; 0 is singular"
     return Tile("Least sigma_min", number(values[at], 3), "", note)
 
 

@@ -196,8 +196,10 @@ class _Run:
     def _sample_at(self, k: Any, s: RunState, p: Parameters) -> Sample:
         first = ops.equal(s.taken, 0.0)
         body: dict[str, Any] = {}
+        if faults.of_kind(p.events, "stuck"):
+            body["turning"] = faults.as_working(p.true_array, p.events, k * p.dt)
         if not isinstance(s.q, tuple):
-            body = {"q_BN": s.q, "omega_BN_B": s.omega, "q_BR": _error(s)}
+            body |= {"q_BN": s.q, "omega_BN_B": s.omega, "q_BR": _error(s)}
         return Sample(
             array=faults.as_it_is(p.true_array, p.events, k * p.dt),
             delta=s.delta,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from nullmotion import rotation
-from nullmotion.array import momentum_state
+from nullmotion.array import CmgArray, momentum_state
 from nullmotion.sim.setup import Setup
 from nullmotion.spacecraft import faults
 
@@ -76,6 +76,16 @@ class Trajectory:
             [getattr(faults.as_it_is(array, events, float(t)), quantity)(d) for t, d in rows]
         )
 
+    def _of_working(self, function: Callable[[CmgArray, Any, Any], Any]) -> np.ndarray:
+        """Return a function of (array, delta, hdot) at each instant for the CMGs that turn."""
+        array, events = self.setup.true_array, self.setup.events
+        if not events:
+            return np.asarray(function(array, self.delta, self.hdot))
+        rows = zip(self.t, self.delta, self.hdot, strict=True)
+        return np.array(
+            [function(faults.as_working(array, events, float(t)), d, h) for t, d, h in rows]
+        )
+
     @cached_property
     def q_BR(self) -> np.ndarray | None:
         """Attitude error against the reference, scalar part not negative, (N+1, 4)."""
@@ -130,7 +140,7 @@ class Trajectory:
     def _singular_values(self) -> np.ndarray:
         """Singular values of A / mean momentum, descending; NaN where angles are not finite."""
         array = self.setup.true_array
-        jacobians = self._jacobians / array.mean_momentum
+        jacobians = self._of_working(lambda a, delta, _: a.unit_jacobian(delta))
         known = np.isfinite(jacobians).all(axis=(1, 2))
         s = np.full((len(jacobians), array.m), np.nan)
         found = np.linalg.svd(jacobians[known], compute_uv=False)
@@ -140,7 +150,7 @@ class Trajectory:
     @cached_property
     def eram(self) -> np.ndarray:
         """Effective residual angular momentum of each CMG (Mao 2019, Eq 28), (N+1, n)."""
-        found = momentum_state.eram(self.setup.true_array, self.delta, self.hdot)
+        found = self._of_working(momentum_state.eram)
         return np.where(np.isfinite(self.delta).all(axis=1, keepdims=True), found, np.nan)
 
     @cached_property

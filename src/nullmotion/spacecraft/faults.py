@@ -25,6 +25,14 @@ def as_it_is(array: CmgArray, events: Events, t: Any) -> CmgArray:
     return array.altered(h0=array.h0 * _left(spinning, array.n, t)) if spinning else array
 
 
+def as_working(array: CmgArray, events: Events, t: Any) -> CmgArray:
+    """Return the true array at a time with stuck CMGs left out: what can still give torque."""
+    if not events:
+        return array
+    now = as_it_is(array, events, t)
+    return now.altered(h0=now.h0 * stuck(events, array.n, t))
+
+
 def momentum_loss(array: CmgArray, events: Events, t: Any, delta: Any, start: Any) -> Any:
     """Return sum_i dh0_i/dt (s_i cos delta_i + t_i sin delta_i) of wheels spinning down [N m].
 
