@@ -59,7 +59,7 @@ class SmoothValue:
         extremes = rollouts.totals(knots)
         rate = 1.0 / (width * np.maximum(np.abs(extremes), 1e-9))
         sums, slopes = self._sums(knots, width, extremes, rate)
-        sign, totals, moves = self._signs[:, None], sums, slopes
+        sign = self._signs[:, None]
         with np.errstate(all="ignore"):
             smooth = extremes + sign * np.log(sums) / rate
             totals = np.where(sign, smooth, sums)
