@@ -8,6 +8,7 @@ PIP := $(BIN)/python -m pip install -qq --disable-pip-version-check -c constrain
 INSTALL := $(PIP) --no-build-isolation -e
 PINS := pyproject.toml constraints.txt
 BENCHMARK := benchmarks/run.py
+PYTEST := $(BIN)/python -m pytest -n auto
 MADE := build dist site docs/laws nullmotion-demo src/*.egg-info
 CACHES := .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis .benchmarks
 
@@ -21,10 +22,10 @@ demo: $(VENV)/.made ## Steer through an elliptic singularity with every law; tab
 	@$(BIN)/nullmotion demo $(ARGS)
 
 test: $(VENV)/.dev ## Run the whole test suite (ARGS="-k sigma" for some of it)
-	@$(BIN)/python -m pytest $(ARGS)
+	@$(PYTEST) $(ARGS)
 
 quick: $(VENV)/.dev ## Run the tests without the slow ones
-	@$(BIN)/python -m pytest -q -m "not slow and not browser" $(ARGS)
+	@$(PYTEST) -q -m "not slow and not browser" $(ARGS)
 
 lint: $(VENV)/.dev ## Check style, format and the order of imports
 	@$(BIN)/ruff check --quiet .

@@ -40,3 +40,19 @@ def slew() -> Callable[..., Any]:
         return sim.run(sim.Setup(**setup | changes))
 
     return fly
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark as slow all but n evenly spread cases of tests marked ``sampled(n)``."""
+    cases: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        if item.get_closest_marker("sampled"):
+            cases.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    for group in cases.values():
+        marker = group[0].get_closest_marker("sampled")
+        assert marker is not None
+        kept = {len(group) * i // marker.args[0] for i in range(marker.args[0])}
+        for index, item in enumerate(group):
+            if index not in kept:
+                item.add_marker(pytest.mark.slow)

@@ -189,6 +189,7 @@ def test_a_law_says_what_it_is(law: str) -> None:
 
 
 @steered()
+@pytest.mark.sampled(18)
 def test_kernel_equals_plain(law: str, layout: str) -> None:
     steering, array = laws.create(law), array_of(layout)
     if not steering.traceable:
@@ -206,6 +207,7 @@ def test_kernel_equals_plain(law: str, layout: str) -> None:
 
 
 @pytest.mark.parametrize("law", laws.names())
+@pytest.mark.sampled(4)
 def test_kernel_equals_plain_up_to_rounding(law: str) -> None:
     """300 random states of the pyramid, to 1e-13 times the state's condition number."""
     steering, array = laws.create(law), array_of("pyramid")
@@ -230,6 +232,7 @@ def test_plain_python_is_finite_too(law: str) -> None:
 
 
 @steered(Claim.EXACT_TORQUE)
+@pytest.mark.sampled(15)
 def test_exact_torque(law: str, layout: str) -> None:
     steering, array = laws.create(law), array_of(layout)
     margin = steering.exact_above(array)
@@ -249,6 +252,7 @@ def test_finite(law: str, layout: str) -> None:
 
 
 @steered(Claim.BOUNDED)
+@pytest.mark.sampled(16)
 def test_bounded(law: str, layout: str) -> None:
     steering, array = laws.create(law), array_of(layout)
     for delta, hdot in (singular_states(array), regular_states(array, 0.0)):
@@ -258,6 +262,7 @@ def test_bounded(law: str, layout: str) -> None:
 
 
 @steered(Claim.ROTATION)
+@pytest.mark.sampled(16)
 def test_rotation(law: str, layout: str) -> None:
     steering, array = laws.create(law), array_of(layout)
     delta, hdot = regular_states(array, 0.05)

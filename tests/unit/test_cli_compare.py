@@ -85,6 +85,7 @@ def test_attitudes_are_compared_by_what_a_slew_is_judged_by(cli, tmp_path):
     assert f"{kept}/{len(judged)}" in words
 
 
+@pytest.mark.slow
 def test_varied_attitudes_are_tables_of_their_own_metrics(cli):
     settings = [part for key, value in SLEW.items() for part in ("--set", f"{key}={value}")]
     vary = "spacecraft.inertia_kg_m2=[10, 12, 8],[11, 12, 8]"

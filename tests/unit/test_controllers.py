@@ -100,6 +100,7 @@ def all_of_them() -> list[Any]:
 
 
 @pytest.mark.parametrize("controller", all_of_them(), ids=repr)
+@pytest.mark.sampled(2)
 def test_target_is_reached_from_a_tumble(controller: Any) -> None:
     run = fly(
         controller, turned([1, -2, 0.5], 170.0), [0.1, 0.06, -0.15], at(turned([0, 1, 1], 50)), 80.0
@@ -109,6 +110,7 @@ def test_target_is_reached_from_a_tumble(controller: Any) -> None:
 
 
 @pytest.mark.parametrize("controller", all_of_them()[::3], ids=repr)
+@pytest.mark.sampled(1)
 def test_both_signs_of_the_quaternion_go_the_shorter_way(controller: Any) -> None:
     start = turned([1, 0.3, -0.2], 150.0)
     one, other = (fly(controller, q, seconds=30.0) for q in (start, -start))
@@ -142,6 +144,7 @@ def test_a_small_error_answers_with_the_frequency_and_damping_asked(
 @pytest.mark.parametrize("acceleration", [None, 0.3, 2.0])
 @pytest.mark.parametrize("damping", [0.7, 1.0])
 @pytest.mark.parametrize("degrees", [20.0, 179.0])
+@pytest.mark.sampled(2)
 def test_eigenaxis_slew_keeps_axis_rate_and_acceleration(
     acceleration: float | None, damping: float, degrees: float
 ) -> None:

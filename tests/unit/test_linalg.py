@@ -65,6 +65,7 @@ def test_svd_on_floats(m: int, n: int) -> None:
 
 
 @pytest.mark.parametrize(("m", "n"), SHAPES)
+@pytest.mark.sampled(5)
 def test_svd_in_compiled_code(m: int, n: int) -> None:
     batch = matrices(m, n)
     found = compile_function(linalg.svd, np.zeros((m, n)))(batch)

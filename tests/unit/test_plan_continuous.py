@@ -42,6 +42,7 @@ def curves(rng, depth, count=6):
 
 
 @pytest.mark.parametrize("case", BEST)
+@pytest.mark.sampled(1)
 def test_smoothed_values_come_to_the_true_ones(case, rng):
     knots = curves(rng, 10, 20)
     true = rollouts(case).values(knots)
@@ -145,6 +146,7 @@ def test_curves_keep_their_shape_where_the_new_knots_can_hold_it(rng):
         assert np.abs(drawn).max() <= 1.0
 
 
+@pytest.mark.slow
 def test_a_search_repeats_and_is_never_worse_than_its_start():
     start, shares = np.array(BEST["roll"], float), []
     found = continuous.search(rollouts(), start, seed=3, evaluations=5000, seconds=60.0)

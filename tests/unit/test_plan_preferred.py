@@ -19,6 +19,7 @@ def manoeuvre(array, start, hdot, **more):
 
 
 @pytest.mark.parametrize("cost", ["papakonstantinou", "min-manipulability", "energy", "peak-rate"])
+@pytest.mark.sampled(1)
 def test_the_start_has_the_same_momentum_and_is_no_worse(cost):
     array = nm.layouts.pyramid(rate_limit=1.0)
     setup = manoeuvre(array, np.radians([-70.0, 0.0, 75.0, 0.0]), [0.6, 0.0, 0.0])

@@ -59,6 +59,7 @@ def brute(rollouts, levels):
 
 
 @pytest.mark.parametrize("seed", range(12))
+@pytest.mark.sampled(5)
 def test_exact_is_the_best_of_all_courses(seed):
     depth, levels = (1 + seed % 5, 3) if seed % 4 else (3, 5)
     rollouts = Rollouts(setup_of(seed), cost_of(seed), depth, k_max=0.5, lag=bool(seed % 2))
@@ -79,6 +80,7 @@ def test_exact_is_the_best_of_all_courses(seed):
 
 
 @pytest.mark.parametrize("seed", range(8))
+@pytest.mark.sampled(3)
 def test_courses_that_share_their_start_get_the_same_bits(seed):
     rollouts = Rollouts(setup_of(seed), cost_of(seed), 5, k_max=0.5)
     np.testing.assert_array_equal(
@@ -94,6 +96,7 @@ def faults():
 
 
 @pytest.mark.parametrize("seed", range(16))
+@pytest.mark.sampled(4)
 def test_no_completion_beats_its_bound(seed, rng):
     setup = setup_of(seed)
     if seed >= 12 and setup.array.m == 3:
@@ -132,6 +135,7 @@ def test_wheels_that_spin_down_widen_the_bound(rng):
 
 
 @pytest.mark.parametrize("seed", range(6))
+@pytest.mark.sampled(2)
 def test_a_flight_of_the_plan_has_the_value_that_was_promised(seed):
     setup = setup_of(seed, steps=60)
     cost = costs.create("papakonstantinou", manipulability_threshold=0.8)

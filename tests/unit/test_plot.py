@@ -199,6 +199,7 @@ def turned(slew):
     return slew(steps=100, events=(Event("stuck", 2, 3.0, detected_after=0.5),))
 
 
+@pytest.mark.sampled(1)
 def test_a_figure_of_an_attitude(tmp_path, turned):
     made = panels.figure_panels(turned)
     assert [p.key for p in made] == [

@@ -224,6 +224,7 @@ def test_a_written_document_reads_back(rng):
 
 
 @pytest.mark.parametrize("name", library_names())
+@pytest.mark.sampled(4)
 def test_library_scenarios_fly(name):
     scenario = load_scenario(name)
     assert scenario.about.title

@@ -548,6 +548,7 @@ def test_setting_a_value_of_an_event_leaves_what_was_given_alone():
     assert events[0]["at_s"] == 0.1
 
 
+@pytest.mark.slow
 def test_a_batch_of_attitudes_equals_its_runs(rng):
     base = load_scenario(ATTITUDE)
     targets, attitudes = rng.normal(size=(2, 5, 4))
@@ -573,6 +574,7 @@ def test_a_batch_of_attitudes_equals_its_runs(rng):
         assert found == pytest.approx(one.metrics["final_pointing_error_deg"], abs=1e-6)
 
 
+@pytest.mark.slow
 def test_euler_angles_vary_in_a_batch():
     base = load_scenario(ATTITUDE.replace(TARGET, "target_euler_321_deg = [0, 0, 0]"))
     angles = [[0.0, 0.0, 20.0], [40.0, 0.0, 0.0]]
@@ -605,6 +607,7 @@ def test_euler_angles_vary_in_a_batch():
         {"target_euler_321_deg": None},
     ],
 )
+@pytest.mark.sampled(2)
 def test_any_value_of_an_attitude_mission_varies_by_key(values):
     base = load_scenario(FULL, {"sensors.gyro_noise_deg_s": 0.0})
     if "target_euler_321_deg" in values:
@@ -658,6 +661,7 @@ def test_a_momentum_mission_reaches_its_momentum():
     assert np.allclose(batch.final_momentum, 0.3 * np.eye(3), atol=1e-6)
 
 
+@pytest.mark.sampled(1)
 def test_an_adaptive_integrator_agrees_one_after_another():
     base = load_scenario(ATTITUDE, {"simulation.duration_s": 0.2})
     adaptive = base.with_values({"simulation.integrator": "dop853"})

@@ -67,6 +67,7 @@ def test_measures_have_deltas_leading_axes() -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
+@pytest.mark.sampled(4)
 def test_the_nearest_configuration_is_singular_and_as_far_as_it_says(name: str) -> None:
     array, delta = angles(name, 15, seed=1)
     for d in delta:
@@ -80,6 +81,7 @@ def test_the_nearest_configuration_is_singular_and_as_far_as_it_says(name: str) 
 
 
 @pytest.mark.parametrize("name", NAMES)
+@pytest.mark.sampled(4)
 def test_no_other_search_finds_a_nearer_one(name: str) -> None:
     array, delta = angles(name, 3, seed=2)
     for d in delta:

@@ -99,7 +99,11 @@ def flown(
 
 # all pairs of on and off of seven things in eight runs
 PAIRS = [(a, b, a ^ b, c, a ^ c, b ^ c, a ^ b ^ c) for a, b, c in product((False, True), repeat=3)]
-ALL = list(product((False, True), repeat=7))
+# all quadruples but a few: a fraction of all 128 of resolution IV
+MOST = [
+    (a, b, c, d, e, a ^ b ^ c ^ d, a ^ b ^ d ^ e)
+    for a, b, c, d, e in product((False, True), repeat=5)
+]
 
 
 def agree(what: Setup) -> None:
@@ -117,7 +121,7 @@ def agree(what: Setup) -> None:
 
 @pytest.mark.parametrize(
     "on",
-    [*PAIRS[3::4], *[pytest.param(x, marks=SLOW) for x in ALL if x not in PAIRS[3::4]]],
+    [*PAIRS[3::4], *[pytest.param(x, marks=SLOW) for x in MOST if x not in PAIRS[3::4]]],
     ids=lambda x: "".join("-+"[v] for v in x),
 )
 def test_kernel_and_python_agree(on: tuple[bool, ...]) -> None:
@@ -162,6 +166,7 @@ def test_batch_of_attitudes_equals_single_runs(rng: Any) -> None:
     assert len({tuple(q) for q in batch.final_q_BN}) == runs
 
 
+@pytest.mark.slow
 def test_batch_of_setups_varies_everything() -> None:
     """Inertia, servo, faults, noise may differ from run to run, and be ideal in some."""
     base, setups = flown(*[True] * 7), []

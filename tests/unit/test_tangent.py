@@ -158,6 +158,7 @@ def extrapolated(f: Any, step: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize(("name", "layout"), steered())
+@pytest.mark.sampled(4)
 def test_laws_have_the_derivatives_of_differences(name, layout, rng):
     law, array = laws.create(name), array_of(layout)
     n, m, count = array.n, array.m, 120
