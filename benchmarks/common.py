@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 LAWS = (
     "pseudo-inverse", "sr", "gsr", "odsr", "sda", "nd", "local-gradient", "dsea", "vcbsae",
+    "follow-plan",
 )  # fmt: skip
 
 

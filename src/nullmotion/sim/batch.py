@@ -92,10 +92,13 @@ def run_batch(
         progress: Called with the finished share.
 
     Raises:
-        InputError: When lengths disagree or the setups differ in more than numbers.
+        InputError: When lengths disagree, the setups differ in more than numbers, or the
+            integrator is not compiled.
         TraceError: When the law cannot be traced: run such laws one by one.
         MemoryLimitError: When the histories would not fit.
     """
+    if base.integrator == "dop853":
+        raise InputError("integrator", base.integrator, "a compiled one: dop853 runs go one by one")
     given = {"delta": delta, "hdot": hdot, "target": target}
     given |= {"spacecraft.q_BN": q_BN, "spacecraft.omega_BN_B": omega_BN_B}
     table, varying = values(base, given, setups)
