@@ -1,7 +1,4 @@
-"""Plan null motion for a whole slew, prove that it is the best on its grid, and fly it.
-
-    python examples/plan_slew.py
-"""
+"""Plan null motion for a whole slew, prove that it is the best on its grid, and fly it."""
 
 from nullmotion import plan
 from nullmotion.plan import costs

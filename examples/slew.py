@@ -1,7 +1,4 @@
-"""Fly a slew with a gimbal that sticks, from Python, and see who settles.
-
-    python examples/slew.py
-"""
+"""Fly a slew with a gimbal that sticks, from Python, and see who settles."""
 
 import numpy as np
 

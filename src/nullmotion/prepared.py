@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -54,9 +52,9 @@ class PreparedLaw:
         self.delta, self.hdot = self._io[:n], self._io[n : n + m]
         self._state = self._io[n + m + 1 : inputs]
         self.rates, self._raised = self._io[inputs : inputs + n], self._io[inputs + n :]
-        run = llvm.machine(call_source(program, carried)).function("call", ctypes.c_void_p)
-        step = partial(run, ctypes.c_void_p(self._io.ctypes.data))
-        self._bound = (self.delta, self.hdot, self._io[n + m : n + m + 1], step, self.rates)
+        source = call_source(program, carried, self._io.ctypes.data)
+        run = llvm.Machine(source, 2).function("call", brief=True)  # the address is its own
+        self._bound = (self.delta, self.hdot, self._io[n + m : n + m + 1], run, self.rates)
         self.reset()
 
     def reset(self, delta: Any = None) -> None:
@@ -67,8 +65,8 @@ class PreparedLaw:
     def __call__(self, delta: Any, hdot: Any, t: float = 0.0) -> np.ndarray:
         """Return gimbal rates [rad/s] for measured angles, wanted hdot and time."""
         angles, wanted, clock, step, rates = self._bound
-        angles[:] = delta
-        wanted[:] = hdot
+        angles[...] = delta
+        wanted[...] = hdot
         clock[0] = t
         step()
         return rates

@@ -82,7 +82,7 @@ def _caption(comparison: Comparison) -> str:
         f"{c.label} could not run: {c.reason}." for c in comparison.cases if c.trajectory is None
     ]
     stuck = any(event.kind == "stuck" for event in comparison.scenario.events)
-    counted = " It counts a stuck CMG as if it turned." if stuck else ""
+    counted = " A stuck CMG does not count." if stuck else ""
     measure = f"{stops}sigma_min is that of A over the mean momentum.{counted}"
     return " ".join([measure, *refused])
 

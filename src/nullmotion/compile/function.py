@@ -76,16 +76,17 @@ def _address(base: str, row: str, stride: str, lane: str, name: str) -> list[str
     ]
 
 
-def call_source(program: Program, carried: int) -> str:
-    """Return IR of ``call(io)``: one evaluation on one buffer, for the least call overhead.
+def call_source(program: Program, carried: int, buffer: int) -> str:
+    """Return IR of ``call()``: one evaluation on the buffer at an address.
 
-    The buffer holds the inputs, then the outputs and a status for each guard. The last
-    ``carried`` outputs go back to the last ``carried`` inputs: a state that is carried on.
+    No argument is the least to hand over from Python. The buffer holds the inputs, then the
+    outputs and a status for each guard. The last ``carried`` outputs go back to the last
+    ``carried`` inputs: a state that is carried on.
     """
     shape = llvm.Shape(1)
     count = len(program.inputs)
     code, outputs, flags = _evaluation(program, shape, "%io", "1", "0")
-    lines = ["define void @call(ptr %io) #0 {", *code]
+    lines = ["define void @call() #0 {", f"  %io = inttoptr i64 {buffer} to ptr", *code]
     fresh = len(outputs) - carried
     values = [*outputs[:fresh], *flags, *outputs[fresh:]]
     rows = [*range(count, count + fresh + len(flags)), *range(count - carried, count)]

@@ -235,10 +235,14 @@ class Machine:
         self._engine.finalize_object()
         self._target, self._module = target, module
 
-    def function(self, name: str, *argument_types: Any) -> Any:
-        """Return a compiled function, callable from Python (releases the GIL)."""
+    def function(self, name: str, *argument_types: Any, brief: bool = False) -> Any:
+        """Return a compiled function, callable from Python.
+
+        It releases the GIL, unless it is so brief that this would cost more than it gives.
+        """
         address = self._engine.get_function_address(name)
-        function: Any = ctypes.CFUNCTYPE(None, *argument_types)(address)
+        kind: Any = ctypes.PYFUNCTYPE if brief else ctypes.CFUNCTYPE
+        function: Any = kind(None, *argument_types)(address)
         function.owner = self  # the code must outlive the function
         return function
 

@@ -32,7 +32,7 @@ MARKING_ATTITUDE = (
     "★ and a frame mark the best value of a column among the cases that settled. sigma_min is for "
     "A divided by the mean momentum of the working CMGs."
 )
-STUCK = " It counts a stuck CMG as if it turned."
+STUCK = " A stuck CMG does not count."
 _BASIS = ("Parameters", "Information used", "Status")
 
 
