@@ -295,6 +295,7 @@ WORN = Servo(0.05, 0.8, 20.0, 0.1, friction=1e-3, inertia=0.05, encoder_resoluti
         ),
     ],
 )
+@pytest.mark.sampled(2)
 def test_momentum_is_conserved(array: dict[str, Any], more: dict[str, Any]) -> None:
     """Without torque from outside, over a slew of 100 s at 0.01 s."""
     what = {"dt": 0.01, "steps": 10000, "period_steps": 1, "delta": np.radians([3.0, -5, 4, 2])}

@@ -244,6 +244,7 @@ def test_exact_torque(law: str, layout: str) -> None:
 
 
 @steered(Claim.FINITE)
+@pytest.mark.sampled(9)
 def test_finite(law: str, layout: str) -> None:
     steering, array = laws.create(law), array_of(layout)
     rates, state = many(steering, array, *singular_states(array))
@@ -271,6 +272,7 @@ def test_rotation(law: str, layout: str) -> None:
 
 
 @steered(Claim.SCALING)
+@pytest.mark.sampled(15)
 def test_scaling(law: str, layout: str) -> None:
     steering, array = laws.create(law), array_of(layout)
     delta, hdot = regular_states(array, 0.05)

@@ -73,6 +73,7 @@ def test_set_reaches_every_kind_of_value(cli, tmp_path):
     assert found["parameters"]["as_published"] is True
 
 
+@pytest.mark.slow
 def test_the_seed_reaches_the_plant(cli, tmp_path):
     for seed in (1, 2):
         assert cli("run", "plant-errors", *SHORT, "--seed", str(seed), "--out", f"r{seed}")[0] == 0

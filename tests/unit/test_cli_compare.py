@@ -68,6 +68,7 @@ def test_varied_cases_equal_their_single_runs():
 SLEW = {"simulation.duration_s": 0.4, "simulation.dt_s": 0.02}
 
 
+@pytest.mark.slow
 def test_attitudes_are_compared_by_what_a_slew_is_judged_by(cli, tmp_path):
     settings = [part for key, value in SLEW.items() for part in ("--set", f"{key}={value}")]
     status, out, err = cli("compare", "attitude-slew", *settings, "--laws", "gsr", "--out", "c")

@@ -123,6 +123,7 @@ def test_both_signs_of_the_quaternion_go_the_shorter_way(controller: Any) -> Non
 
 @pytest.mark.parametrize("name", ["quaternion-feedback", "tracking", "eigenaxis-slew"])
 @pytest.mark.parametrize("damping", [0.5, 1.0])
+@pytest.mark.sampled(2)
 def test_a_small_error_answers_with_the_frequency_and_damping_asked(
     name: str, damping: float
 ) -> None:

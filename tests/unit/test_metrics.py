@@ -182,6 +182,7 @@ def test_the_catalogue() -> None:
 
 
 @pytest.mark.parametrize("key", ARRAYS)
+@pytest.mark.sampled(3)
 def test_against_the_definitions(key: str) -> None:
     samples = [sample(ARRAYS[key](), seed) for seed in range(20)]
     kernel = through_the_kernel(key, samples)

@@ -52,6 +52,7 @@ def test_smoothed_values_come_to_the_true_ones(case, rng):
 
 
 @pytest.mark.parametrize("case", ["roll", "kinematic"])
+@pytest.mark.sampled(1)
 def test_gradients_of_counts_are_those_of_differences(case, rng):
     """Without the error, whose extreme the smoothed value takes from the true run."""
     weights = (50.0, 5.0, 0.0, 6.0)
@@ -72,6 +73,7 @@ def test_gradients_of_counts_are_those_of_differences(case, rng):
 
 
 @pytest.mark.parametrize("name", ["min-manipulability", "peak-rate", "energy"])
+@pytest.mark.sampled(1)
 def test_gradients_of_extremes_are_those_of_the_true_value(name, rng):
     """Extremes have a derivative wherever one sample alone holds them."""
     run, value = rollouts("three-axis", 6, name), smooth("three-axis", 6, name)

@@ -704,6 +704,7 @@ def test_the_kinematic_run_of_the_library_sticks_as_the_paper_says():
 
 
 @pytest.mark.parametrize("name", ["attitude-slew", "stuck-gimbal"])
+@pytest.mark.sampled(1)
 def test_the_slews_of_the_library_keep_their_requirements(name):
     scenario = load_scenario(name)
     summary = store.summary(nm.simulate(scenario), scenario)

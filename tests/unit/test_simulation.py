@@ -207,6 +207,7 @@ def test_metrics_are_those_of_the_history():
 
 
 @pytest.mark.parametrize("law", ["pseudo-inverse", "sr", "vcbsae"])
+@pytest.mark.sampled(2)
 def test_kernel_and_python_agree(law):
     s = setup(
         nm.laws.create(law),

@@ -58,6 +58,7 @@ def slope(function: Any) -> Any:
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.sampled(7)
 def test_elementary_functions_have_the_derivatives_of_mpmath(name, rng):
     function, exact, low, high = FUNCTIONS[name]
     x = rng.uniform(low, high, 60)
