@@ -227,7 +227,7 @@ def test_vectors_are_shown_without_rounding_noise():
 
 
 @pytest.mark.parametrize(
-    "kind", ["laws", "layouts", "controllers", "metrics", "papers", "scenarios"]
+    "kind", ["laws", "layouts", "controllers", "metrics", "costs", "papers", "scenarios"]
 )
 def test_lists(kind, cli):
     status, out, err = cli("list", kind)

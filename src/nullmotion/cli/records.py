@@ -8,6 +8,7 @@ from typing import Any
 from nullmotion import laws as law_package
 from nullmotion import metrics as metric_package
 from nullmotion.array import layouts as layout_package
+from nullmotion.plan import costs as cost_package
 from nullmotion.scenario.load import library_names, load_scenario
 from nullmotion.scenario.sections import file_key
 from nullmotion.spacecraft import controllers as controller_package
@@ -45,6 +46,19 @@ def layouts() -> list[dict[str, Any]]:
             "description": _first_line(cls),
         }
         for cls in map(layout_package.get, layout_package.names())
+    ]
+
+
+def costs() -> list[dict[str, Any]]:
+    """Return what a plan can maximise."""
+    return [
+        {
+            "name": cls.name,
+            "meaning": _first_line(cls),
+            "citation": cls.citation,
+            "parameters": _parameters(cls),
+        }
+        for cls in map(cost_package.get, cost_package.names())
     ]
 
 
