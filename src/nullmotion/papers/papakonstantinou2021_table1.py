@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from nullmotion import rotation
+from nullmotion.laws.sr import SingularityRobust
 from nullmotion.papers.base import Cell, Value
 from nullmotion.papers.papakonstantinou2021_cases import PRINTED_DT, Manoeuvre
 from nullmotion.plan import skip
@@ -76,6 +77,7 @@ def cells(roll: Manoeuvre, kinematic: Manoeuvre) -> list[Cell]:
 def parameters(manoeuvre: Manoeuvre) -> dict[str, Value]:
     """Return what a run on the paper's plant really uses, by column."""
     setup, section, law = manoeuvre.setup, manoeuvre.section, manoeuvre.setup.law
+    assert isinstance(law, SingularityRobust)
     used: dict[str, Value] = {
         "h0_Nms": float(np.mean(setup.array.h0)),
         "time_step_s": setup.dt,
@@ -84,8 +86,8 @@ def parameters(manoeuvre: Manoeuvre) -> dict[str, Value]:
         "rate_threshold_deg_s": float(np.degrees(np.min(setup.array.rate_limit))),
         "initial_gimbal_deg": words(np.degrees(setup.delta)),
         "k_max": manoeuvre.rollouts.k_max,
-        "lambda0": float(getattr(law, "lambda0")),  # noqa: B009
-        "mu": float(getattr(law, "mu")),  # noqa: B009
+        "lambda0": law.lambda0,
+        "mu": law.mu,
         "w_th": manoeuvre.cost.manipulability_threshold,
         "D": float(manoeuvre.rollouts.depth),
         "skip_rate": words((0, skip.MOST)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from nullmotion import rotation
-from nullmotion.array import CmgArray, momentum_state
+from nullmotion.array import momentum_state
 from nullmotion.sim.setup import Setup
 from nullmotion.spacecraft import faults
 
@@ -64,27 +64,16 @@ class Trajectory:
     @cached_property
     def momentum(self) -> np.ndarray:
         """Momentum of the true array [N m s], (N+1, m)."""
-        return self._of_array("momentum")
+        array = self.setup.true_array
+        if not faults.of_kind(self.setup.events, "spin-down"):
+            return array.momentum(self.delta)
+        turning = np.einsum("kn,knm->km", self._shares(), array.rotor_momenta(self.delta))
+        return turning + array.torque_axes @ array.momentum_bias
 
-    def _of_array(self, quantity: str) -> np.ndarray:
-        """Return what the true array gives at each instant, wheels that spin down included."""
-        array, events = self.setup.true_array, self.setup.events
-        if not faults.of_kind(events, "spin-down"):
-            return np.asarray(getattr(array, quantity)(self.delta))
-        rows = zip(self.t, self.delta, strict=True)
-        return np.array(
-            [getattr(faults.as_it_is(array, events, float(t)), quantity)(d) for t, d in rows]
-        )
-
-    def _of_working(self, function: Callable[[CmgArray, Any, Any], Any]) -> np.ndarray:
-        """Return a function of (array, delta, hdot) at each instant for the CMGs that turn."""
-        array, events = self.setup.true_array, self.setup.events
-        if not events:
-            return np.asarray(function(array, self.delta, self.hdot))
-        rows = zip(self.t, self.delta, self.hdot, strict=True)
-        return np.array(
-            [function(faults.as_working(array, events, float(t)), d, h) for t, d, h in rows]
-        )
+    def _shares(self) -> np.ndarray:
+        """Return what share of its momentum each wheel still has, (N+1, n)."""
+        spinning = faults.of_kind(self.setup.events, "spin-down")
+        return faults.shares(spinning, self.setup.array.n, self.t)
 
     @cached_property
     def q_BR(self) -> np.ndarray | None:
@@ -122,7 +111,7 @@ class Trajectory:
 
     @cached_property
     def _jacobians(self) -> np.ndarray:
-        return self._of_array("jacobian")
+        return self.setup.true_array.jacobian(self.delta) * self._shares()[:, None, :]
 
     @cached_property
     def measures(self) -> dict[str, np.ndarray]:
@@ -137,10 +126,19 @@ class Trajectory:
         }
 
     @cached_property
+    def _working(self) -> np.ndarray:
+        """Spin momentum of each CMG that turns [N m s], (N+1, n); 0 for a stuck one."""
+        array, events = self.setup.true_array, self.setup.events
+        return array.h0 * faults.shares(events, array.n, self.t)
+
+    @cached_property
     def _singular_values(self) -> np.ndarray:
         """Singular values of A / mean momentum, descending; NaN where angles are not finite."""
-        array = self.setup.true_array
-        jacobians = self._of_working(lambda a, delta, _: a.unit_jacobian(delta))
+        array, working = self.setup.true_array, self._working
+        mean = working.sum(axis=1) / np.maximum((working > 0).sum(axis=1), 1)
+        whole = array.h0 * mean[:, None]
+        share = working / np.where(whole > 0, whole, 1.0)
+        jacobians = array.jacobian(self.delta) * share[:, None, :]
         known = np.isfinite(jacobians).all(axis=(1, 2))
         s = np.full((len(jacobians), array.m), np.nan)
         found = np.linalg.svd(jacobians[known], compute_uv=False)
@@ -150,7 +148,8 @@ class Trajectory:
     @cached_property
     def eram(self) -> np.ndarray:
         """Effective residual angular momentum of each CMG (Mao 2019, Eq 28), (N+1, n)."""
-        found = self._of_working(momentum_state.eram)
+        found = momentum_state.eram(self.setup.true_array, self.delta, self.hdot)
+        found = found * (self._working > 0)
         return np.where(np.isfinite(self.delta).all(axis=1, keepdims=True), found, np.nan)
 
     @cached_property
@@ -204,4 +203,4 @@ class Trajectory:
 
 def _matrices(q: np.ndarray) -> np.ndarray:
     """Return the direction cosine matrices C_BN of quaternions (k, 4), (k, 3, 3)."""
-    return np.array([rotation.matrix(row) for row in q])
+    return np.moveaxis(rotation.matrix(q.T), -1, 0)

@@ -74,6 +74,19 @@ def as_known(array: CmgArray, events: Events, t: Any, delta: Any) -> CmgArray:
     return array.altered(h0=array.h0 * known * turning, momentum_bias=bias, rate_limit=limit)
 
 
+def shares(events: Events, n: int, times: np.ndarray) -> np.ndarray:
+    """Return the share of its momentum that each CMG has at each time, (times, n).
+
+    Of a wheel that spins down it is what is left; a stuck CMG counts as without.
+    """
+    table = np.ones((len(times), n))
+    for event in of_kind(events, "spin-down"):
+        table[:, event.cmg] *= _share(event, times)
+    for event in of_kind(events, "stuck"):
+        table[_begun(event, times), event.cmg] = 0.0
+    return table
+
+
 def stuck(events: Events, n: int, t: Any) -> Any:
     """Return 1 for each CMG that turns and 0 for each that is stuck, (n,)."""
     kind = of_kind(events, "stuck")
