@@ -11,7 +11,7 @@ from nullmotion import rotation
 from nullmotion.errors import TraceError
 from nullmotion.scenario.batch import compiled, groups
 from nullmotion.sim.batch import BatchResult, run_batch
-from nullmotion.sim.run import run
+from nullmotion.sim.run import histories, run
 from nullmotion.sim.setup import Setup
 from nullmotion.sim.state import Record
 from nullmotion.sim.trajectory import Trajectory
@@ -72,25 +72,10 @@ def _single(setup: Setup, result: BatchResult, i: int, every: int) -> Flown:
     assert result.history is not None
     stopped = result.stopped_at_s[i]
     taken = setup.steps if np.isnan(stopped) else round(stopped / setup.dt)
-    kept = taken // every + 1
-    cut = Record(*(np.array(column[i, :kept]) for column in result.history))
-    if taken % every == 0:
-        cut.rates[-1], cut.asked[-1], cut.motor_torque[-1] = np.nan, np.nan, np.nan
-    body = setup.spacecraft is not None
+    columns = Record(*(column[i] for column in result.history))
     trajectory = Trajectory(
         setup=setup,
-        t=np.arange(kept) * (setup.dt * every),
-        delta=cut.delta,
-        rates=cut.rates,
-        rates_asked=cut.asked,
-        hdot=cut.hdot,
-        momentum_wanted=cut.wanted,
-        impulse=cut.impulse,
-        q_BN=cut.q_BN if body else None,
-        omega_BN_B=cut.omega_BN_B if body else None,
-        reference=cut.reference if body else None,
-        speed=cut.speed,
-        motor_torque=cut.motor_torque,
+        **histories(setup, columns, taken, every),
         metrics={name: float(values[i]) for name, values in result.metrics.items()},
         stopped_at_s=None if np.isnan(stopped) else float(stopped),
         stop_reason=result.stop_reason[i],

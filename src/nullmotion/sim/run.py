@@ -142,26 +142,11 @@ def assemble(
 ) -> Trajectory:
     """Return the trajectory of a run's record and outcome."""
     taken = int(outcome.taken)
-    kept = taken // decimate + 1
-    cut = Record(*[np.array(c[:kept]) for c in columns])
-    if taken % decimate == 0:
-        cut.rates[-1], cut.asked[-1], cut.motor_torque[-1] = np.nan, np.nan, np.nan
     code = int(outcome.stop)
     stopped = code > 0
     return Trajectory(
         setup=setup,
-        t=np.arange(kept) * (setup.dt * decimate),
-        delta=cut.delta,
-        rates=cut.rates,
-        rates_asked=cut.asked,
-        hdot=cut.hdot,
-        momentum_wanted=cut.wanted,
-        impulse=cut.impulse,
-        q_BN=cut.q_BN if setup.spacecraft else None,
-        omega_BN_B=cut.omega_BN_B if setup.spacecraft else None,
-        reference=cut.reference if setup.spacecraft else None,
-        speed=cut.speed,
-        motor_torque=cut.motor_torque,
+        **histories(setup, columns, taken, decimate),
         metrics=totals(setup, outcome.sums, taken),
         stopped_at_s=round(taken * setup.dt, 12) if stopped else None,
         stop_reason=setup.stop[code - 1].reason if stopped else "end of run",
@@ -169,6 +154,26 @@ def assemble(
         backend=backend,
         instruction_set=instructions,
     )
+
+
+def histories(setup: Setup, columns: Record, taken: int, every: int) -> dict[str, Any]:
+    """Return a run's record as the fields of a `Trajectory`, up to the step that was its last.
+
+    Args:
+        setup: The run.
+        columns: Its record, rows first, one row ``every`` so many steps.
+        taken: Number of steps taken; no rate acts after the last.
+        every: Steps between two rows.
+    """
+    kept = taken // every + 1
+    cut = Record(*[np.array(c[:kept]) for c in columns])
+    if taken % every == 0:
+        cut.rates[-1], cut.asked[-1], cut.motor_torque[-1] = np.nan, np.nan, np.nan
+    found = {"t": np.arange(kept) * (setup.dt * every), **cut._asdict()}
+    found |= {"rates_asked": found.pop("asked"), "momentum_wanted": found.pop("wanted")}
+    if setup.spacecraft is None:
+        found |= dict.fromkeys(("q_BN", "omega_BN_B", "reference"))
+    return found
 
 
 def totals(setup: Setup, sums: Any, taken: Any) -> dict[str, Any]:
