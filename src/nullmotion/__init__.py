@@ -29,6 +29,7 @@ _WHERE = {
     "InputError": "nullmotion.errors",
 }
 _MODULES = {
+    "guarantee": "nullmotion.guarantee",
     "layouts": "nullmotion.array.layouts",
     "laws": "nullmotion.laws",
     "ops": "nullmotion.ops",

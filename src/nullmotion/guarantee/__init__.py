@@ -1,0 +1,39 @@
+"""What an array can be relied on to give: constraint functions, torque capability, proofs.
+
+`create` makes a constraint function by name; it says which gimbal angles hold a momentum,
+what torque the array can give there in every direction, and proves how far that holds.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+# from nullmotion.array.capability import torque_capability
+from nullmotion.registry import Registry
+
+if TYPE_CHECKING:
+    from nullmotion.guarantee.constraint import Constraint
+
+__all__ = ["create", "get", "load_file", "names", "registry"]
+
+registry = Registry(
+    "constraint", "nullmotion.guarantee.constraints", "nullmotion.guarantee.constraint.Constraint"
+)
+names = registry.names
+get = registry.get
+load_file = registry.load_file
+
+
+def create(name: str, **parameters: Any) -> Constraint:
+    """Return a constraint function by name.
+
+    Args:
+        name: Name or alias; see `names`.
+        **parameters: The constraint's fields; the rest keep their defaults.
+
+    Raises:
+        UnknownNameError: For an unknown constraint or parameter, with the nearest names.
+        InputError: For a parameter value that the constraint refuses.
+    """
+    made: Constraint = registry.create(name, **parameters)
+    return made

@@ -1,0 +1,81 @@
+"""What constraints of planar arrays share: angles that are symmetric to the momentum."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from nullmotion import linalg, ops
+from nullmotion.errors import InputError
+from nullmotion.guarantee.constraint import Constraint
+
+
+@dataclass(frozen=True)
+class PlanarConstraint(Constraint):
+    """Base of the planar constraints: gimbal angles measured from the momentum's direction.
+
+    With the angles symmetric to the momentum, A A^T = diag(S, C) across and along it,
+    C = sum cos^2 delta, S = n - C, and row i of the pseudo-inverse has the square
+
+        sin^2 delta_i / S^2 + cos^2 delta_i / C^2.
+    """
+
+    layout: ClassVar[str] = "planar"
+    method: ClassVar[str] = "pseudo-inverse"
+
+    n: int = 5
+
+    @property
+    def layout_parameters(self) -> dict[str, Any]:
+        """The number of CMGs."""
+        return {"n": self.n}
+
+    @property
+    def groups(self) -> tuple[tuple[int, ...], ...]:
+        """All CMGs may change places."""
+        return (tuple(range(self.n)),)
+
+    @property
+    def reach(self) -> float:
+        """All CMGs in line."""
+        return float(self.n)
+
+    def half(self, H: Any) -> list[tuple[Any, int]]:
+        """Return the cosines of the positive half of the angles and how many CMGs have each.
+
+        The greatest angle comes first; a CMG left over is at angle 0.
+        """
+        raise NotImplementedError
+
+    def offsets(self, H: Any) -> Any:
+        """Return gimbal angles from the momentum's direction [rad], (n,), rising; source."""
+        half = [a for c, k in self.half(H) for a in [ops.acos(ops.clip(c, -1.0, 1.0))] * k]
+        return np.array([*[-a for a in half], *[0.0] * (self.n % 2), *half[::-1]])
+
+    def angles(self, h: Any) -> Any:
+        """Return the gimbal angles [rad], (n,); the direction of no momentum is x."""
+        return ops.atan2(h[1], h[0]) + self.offsets(linalg.norm(h))
+
+    def inside(self, h: Any) -> Any:
+        """Return whether |h| < n."""
+        return ops.less(linalg.norm(h), float(self.n))
+
+    def squares(self, h: Any) -> Any:
+        """Return the squared row norms of A^+, one for each cosine."""
+        return self.radial_squares(linalg.norm(h))
+
+    def radial_squares(self, H: Any) -> Any:
+        """Return the squared row norms of A^+ at a momentum of size H."""
+        squared = [(c * c, k) for c, k in self.half(H)]
+        along = sum(2.0 * k * q for q, k in squared) + float(self.n % 2)
+        across = float(self.n) - along
+        rows = [(1.0 - q) / (across * across) + q / (along * along) for q, _ in squared]
+        return np.array([*rows, *([1.0 / (along * along)] * (self.n % 2))])
+
+
+def checked_count(n: Any) -> None:
+    """Refuse a number of CMGs that leaves no null motion."""
+    if isinstance(n, bool) or not isinstance(n, (int, np.integer)) or n < 3:
+        raise InputError("constraint.n", n, "a whole number from 3: two CMGs have no null motion")

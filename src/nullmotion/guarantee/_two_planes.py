@@ -1,0 +1,143 @@
+"""What constraints of two orthogonal planes share: the planes biased against each other.
+
+The x-y plane and the x-z plane share the x axis. They share the momentum along it out by
+a bias Psi(h), which leaves the array's momentum alone:
+
+    p_1 = ((h_x - Psi)/2, h_y),    p_2 = ((h_x + Psi)/2, h_z)                      (Eq 50)
+
+and each plane holds its part p, r = |p|, by CMGs at the angle of p and beside it:
+
+    two CMGs    theta -+ acos(r/2)              q = sqrt(4 - r^2)
+    three CMGs  theta, theta -+ acos((r-1)/2)   q = sqrt(4 - (r-1)^2)
+
+Their rates are e_theta . p'/r +- e_r . p'/q (the middle one of three has the first term
+alone), p' = P hdot with P from the gradient of Psi. That is J_t^-1 of Eq 12 in closed form:
+singular at r = 0 and where a plane is saturated, and nowhere else.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from nullmotion import ops
+from nullmotion.guarantee.constraint import Constraint
+
+
+class Plane(NamedTuple):
+    """One plane's part: momentum (x, other), its slope P over h, (2, 3), number of CMGs."""
+
+    x: Any
+    other: Any
+    slope: Any
+    cmgs: int
+
+
+@dataclass(frozen=True)
+class TwoPlanes(Constraint):
+    """Base of box-90 and roof-6 constraints; an entry gives `bias` and `extent`."""
+
+    #: CMGs in the x-y plane and in the x-z plane
+    counts: ClassVar[tuple[int, int]] = (2, 2)
+
+    def bias(self, h: Any) -> tuple[Any, Any]:
+        """Return Psi and its gradient (3,) at a momentum; source."""
+        raise NotImplementedError
+
+    @property
+    def extent(self) -> float:
+        """Greatest |h_x| of the restricted envelope: where the planes cannot be told apart."""
+        return float(min(self.counts))
+
+    @property
+    def groups(self) -> tuple[tuple[int, ...], ...]:
+        """CMGs of a plane may change places."""
+        first, second = self.counts
+        return tuple(range(first)), tuple(range(first, first + second))
+
+    @property
+    def reach(self) -> float:
+        """Corner of the restricted envelope."""
+        return float(np.hypot(self.extent, np.hypot(*self.counts)))
+
+    def planes(self, h: Any) -> tuple[Plane, Plane]:
+        """Return the two planes' parts of a momentum; source."""
+        psi, gradient = self.bias(h)
+        first = np.array([0.5 * (float(i == 0) - gradient[i]) for i in range(3)])
+        second = np.array([0.5 * (float(i == 0) + gradient[i]) for i in range(3)])
+        y, z = np.eye(3)[1], np.eye(3)[2]
+        one = Plane(0.5 * (h[0] - psi), h[1], np.stack([first, y]), self.counts[0])
+        two = Plane(0.5 * (h[0] + psi), h[2], np.stack([second, z]), self.counts[1])
+        return one, two
+
+    def angles(self, h: Any) -> Any:
+        """Return the gimbal angles [rad], (n,)."""
+        return np.concatenate([angles_of(plane) for plane in self.planes(h)])
+
+    def inside(self, h: Any) -> Any:
+        """Return whether |h_x| <= extent and both planes have 0 < r < their number of CMGs."""
+        good = ops.less_equal(ops.absolute(h[0]), self.extent)
+        for plane in self.planes(h):
+            square = square_of(plane)
+            good = ops.logical_and(good, ops.less(0.0, square))
+            good = ops.logical_and(good, ops.less(square, float(plane.cmgs**2)))
+        return good
+
+    def gimbal_jacobian(self, h: Any) -> Any:
+        """Return d angles / d h, (n, 3), in closed form."""
+        return np.concatenate([np.array(rates_of(p)) @ p.slope for p in self.planes(h)])
+
+    def squares(self, h: Any) -> Any:
+        """Return the squared row norms of `gimbal_jacobian`, without a middle CMG's (least)."""
+        found = []
+        for plane in self.planes(h):
+            a = plane.slope[0]
+            size, across = a @ a, a @ plane.slope[1]  # P P^T; the second row is a unit vector
+            for v in outer_rates(plane):
+                found.append(v[0] * v[0] * size + 2.0 * v[0] * v[1] * across + v[1] * v[1])
+        return np.array(found)
+
+    def margins(self, h: Any, torque_capability: Any) -> Any:
+        """Return values all <= 0 where TC is at least what is given and |h_x| <= extent."""
+        t = torque_capability
+        rows = [t * t * s - 1.0 for s in self.squares(h)]
+        return np.array([*rows, ops.absolute(h[0]) - self.extent])
+
+
+def square_of(plane: Plane) -> Any:
+    return plane.x * plane.x + plane.other * plane.other
+
+
+def _ratio(plane: Plane, square: Any) -> Any:
+    """Return r/q."""
+    if plane.cmgs == 2:
+        return ops.sqrt(square / (4.0 - square))
+    r = ops.sqrt(square)
+    return r / ops.sqrt((3.0 - r) * (1.0 + r))
+
+
+def outer_rates(plane: Plane) -> list[Any]:
+    """Return e_theta/r + e_r/q and e_theta/r - e_r/q: the outer CMGs' rates on p', (2,) each."""
+    square = square_of(plane)
+    k, inverse = _ratio(plane, square), 1.0 / square
+    x, y = plane.x * inverse, plane.other * inverse
+    return [np.array([x * k - y, x + y * k]), np.array([-y - x * k, x - y * k])]
+
+
+def rates_of(plane: Plane) -> list[Any]:
+    first, last = outer_rates(plane)
+    if plane.cmgs == 2:
+        return [first, last]
+    inverse = 1.0 / square_of(plane)
+    return [first, np.array([-plane.other * inverse, plane.x * inverse]), last]
+
+
+def angles_of(plane: Plane) -> Any:
+    r = ops.sqrt(square_of(plane))
+    theta = ops.atan2(plane.other, plane.x)
+    cosine = 0.5 * r if plane.cmgs == 2 else 0.5 * (r - 1.0)
+    spread = ops.acos(ops.clip(cosine, -1.0, 1.0))
+    middle = [theta] if plane.cmgs == 3 else []
+    return np.array([theta - spread, *middle, theta + spread])

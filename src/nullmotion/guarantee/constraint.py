@@ -1,0 +1,172 @@
+"""What a constraint function is: one set of gimbal angles for every momentum.
+
+An array with n CMGs and m torque dimensions has n - m angles to choose at a given momentum.
+A constraint function chooses them once and for all, so that everything the array can do is a
+function of its momentum alone: the torque capability can be mapped, and proven.
+
+Momenta here are divided by one CMG's momentum, torques by one CMG's momentum and rate.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, ClassVar
+
+import numpy as np
+
+from nullmotion import ops
+from nullmotion.array import layouts
+from nullmotion.array.model import CmgArray
+from nullmotion.compile import CompiledFunction, compile_function
+from nullmotion.compile.tangent import jvp
+from nullmotion.errors import InputError
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """Base of constraint functions: one frozen dataclass in one file under ``constraints/``.
+
+    An entry implements `angles`, `inside` and `squares` as source (`nullmotion.ops`, no
+    decision by a value): it then runs on floats, in kernels and in intervals alike.
+
+    Class attributes:
+        name: Name in files and in `nullmotion.guarantee.create`.
+        full_name: What it is called in the field.
+        aliases: Other names it is found under.
+        citation: Where it comes from.
+        layout: Layout whose arrays it holds.
+        method: Inverse whose torque capability it tells: ``pseudo-inverse`` (Eq 15) or
+            ``augmented-jacobian`` (Eq 49).
+    """
+
+    name: ClassVar[str] = ""
+    full_name: ClassVar[str] = ""
+    aliases: ClassVar[tuple[str, ...]] = ()
+    citation: ClassVar[str] = ""
+    layout: ClassVar[str] = ""
+    method: ClassVar[str] = "augmented-jacobian"
+
+    @property
+    def layout_parameters(self) -> dict[str, Any]:
+        """Parameters of the layout beside its name."""
+        return {}
+
+    @property
+    def groups(self) -> tuple[tuple[int, ...], ...]:
+        """Sets of CMGs with one gimbal axis, which may change places."""
+        return ()
+
+    @property
+    def reach(self) -> float:
+        """Momentum beyond which nothing is inside, in any direction."""
+        raise NotImplementedError
+
+    def angles(self, h: Any) -> Any:
+        """Return the gimbal angles [rad], (n,), that hold a momentum inside; source."""
+        raise NotImplementedError
+
+    def inside(self, h: Any) -> Any:
+        """Return whether a momentum (m,) is inside the constrained envelope; source."""
+        raise NotImplementedError
+
+    def squares(self, h: Any) -> Any:
+        """Return the squared norms of the rows of the right inverse at a momentum; source.
+
+        Their greatest is 1/TC^2. Equal rows may be given once.
+        """
+        raise NotImplementedError
+
+    def margins(self, h: Any, torque_capability: Any) -> Any:
+        """Return values that are all <= 0 just where TC is at least what is given; source."""
+        return np.array([torque_capability**2 * s - 1.0 for s in self.squares(h)])
+
+    def gimbal_jacobian(self, h: Any) -> Any:
+        """Return d angles / d h, (n, m): the augmented Jacobian's inverse on momenta; source."""
+        axes = np.eye(len(h))
+        return np.stack([jvp(self.angles, (h,), (axis,))[1] for axis in axes], axis=1)
+
+    def array(self, **parameters: Any) -> CmgArray:
+        """Return an array that it holds; parameters are h0, rate_limit and the like."""
+        return layouts.create(self.layout, **self.layout_parameters, **parameters)
+
+    def without(self, failed: int) -> Constraint:
+        """Return the constraint for the array without one CMG.
+
+        Raises:
+            InputError: Where there is none.
+        """
+        raise InputError("failed CMG", failed, f"{self.name} has no constraint for fewer CMGs")
+
+    def gimbal_angles(self, h: Any) -> np.ndarray:
+        """Return the gimbal angles [rad], (..., n), that hold momenta (..., m).
+
+        Raises:
+            InputError: For a momentum outside the constrained envelope.
+        """
+        momenta, shape = self._checked(h)
+        angles, inside = _compiled(self).angles(momenta)
+        if not inside.all():
+            worst = momenta[np.argmin(inside)]
+            raise InputError("h", worst.tolist(), f"a momentum inside the envelope of {self.name}")
+        return angles.reshape(*shape, -1)
+
+    def torque_capability(self, h: Any) -> Any:
+        """Return the torque capability at momenta (..., m), a float or (...); 0.0 outside."""
+        momenta, shape = self._checked(h)
+        return _compiled(self).capability(momenta).reshape(shape)[()]
+
+    def _checked(self, h: Any) -> tuple[np.ndarray, tuple[int, ...]]:
+        momenta = np.asarray(h, float)
+        m = self._m
+        if momenta.ndim == 0 or momenta.shape[-1] != m:
+            raise InputError("h", momenta.tolist(), f"{m} components of momentum on the last axis")
+        if not np.isfinite(momenta).all():
+            raise InputError("h", "not finite", "finite momenta, in units of one CMG's")
+        return momenta.reshape(-1, m), momenta.shape[:-1]
+
+    @property
+    def _m(self) -> int:
+        return self.array().m
+
+
+def capability(constraint: Constraint, h: Any) -> Any:
+    """Return the torque capability at a momentum (m,), 0 outside; source."""
+    greatest = ops.amax(np.asarray(constraint.squares(h)))
+    good = ops.logical_and(constraint.inside(h), ops.less(0.0, greatest))
+    good = ops.logical_and(good, ops.less(greatest, np.inf))
+    return ops.where(good, 1.0 / ops.sqrt(ops.where(good, greatest, 1.0)), 0.0)
+
+
+class _Compiled:
+    """Kernels of one constraint, made when first asked for."""
+
+    def __init__(self, constraint: Constraint) -> None:
+        self._constraint = constraint
+        self._made: dict[str, CompiledFunction] = {}
+
+    def _kernel(self, name: str, source: Any) -> CompiledFunction:
+        if name not in self._made:
+            self._made[name] = compile_function(source, np.zeros(self._constraint._m))
+        return self._made[name]
+
+    def angles(self, h: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return gimbal angles and whether each momentum is inside."""
+        c = self._constraint
+
+        def source(h: Any) -> tuple[Any, Any]:
+            return c.angles(h), ops.where(c.inside(h), 1.0, 0.0)
+
+        angles, inside = self._kernel("angles", source)(h)
+        return angles, inside > 0.5
+
+    def capability(self, h: np.ndarray) -> np.ndarray:
+        """Return torque capabilities."""
+        c = self._constraint
+        found: np.ndarray = self._kernel("capability", lambda h: capability(c, h))(h)
+        return found
+
+
+@lru_cache(maxsize=64)
+def _compiled(constraint: Constraint) -> _Compiled:
+    return _Compiled(constraint)

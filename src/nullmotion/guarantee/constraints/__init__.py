@@ -1,0 +1,1 @@
+"""Constraint functions, one file each."""
