@@ -9,14 +9,23 @@ import typer
 
 from nullmotion.cli import screen
 
-KINDS = ("laws", "layouts", "controllers", "metrics", "costs", "papers", "scenarios")
+KINDS = (
+    "laws",
+    "layouts",
+    "constraints",
+    "controllers",
+    "metrics",
+    "costs",
+    "papers",
+    "scenarios",
+)
 
 
 def list_(
     kind: Annotated[str, typer.Argument(metavar="|".join(KINDS))],
     as_json: Annotated[bool, typer.Option("--json", help="As JSON.")] = False,
 ) -> None:
-    """List the laws, layouts, controllers, metrics, costs, papers or scenarios."""
+    """List the laws, layouts, constraints, controllers, metrics, costs, papers or scenarios."""
     from nullmotion.errors import UnknownNameError
 
     if kind not in KINDS:

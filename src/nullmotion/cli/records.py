@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
+from nullmotion import guarantee as constraint_package
 from nullmotion import laws as law_package
 from nullmotion import metrics as metric_package
 from nullmotion.array import layouts as layout_package
@@ -46,6 +47,23 @@ def layouts() -> list[dict[str, Any]]:
             "description": _first_line(cls),
         }
         for cls in map(layout_package.get, layout_package.names())
+    ]
+
+
+def constraints() -> list[dict[str, Any]]:
+    """Return the constraint functions: what an array can be held to, with guarantees."""
+    return [
+        {
+            "name": cls.name,
+            "full_name": cls.full_name,
+            "layout": cls.layout,
+            "aliases": list(cls.aliases),
+            "torque_capability_of": cls.method,
+            "citation": cls.citation,
+            "parameters": _parameters(cls),
+            "description": _first_line(cls),
+        }
+        for cls in map(constraint_package.get, constraint_package.names())
     ]
 
 
