@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from nullmotion import layouts, metrics, papers
+from nullmotion import guarantee, layouts, metrics, papers
 from nullmotion.compile import elementary
 from nullmotion.metrics.base import PLAIN
 from nullmotion.plan import costs
@@ -98,6 +98,15 @@ def controller_table() -> Iterable[str]:
         keys = ", ".join(f"`{sections.file_key(f)}`" for f in dataclasses.fields(entry))
         rows.append((f"`{entry.name}`", keys, summary(entry), entry.citation))
     return table(("Controller", "Parameters", "Torque on the vehicle", "Source"), rows)
+
+
+def constraint_table() -> Iterable[str]:
+    """Return the constraint functions with their parameters."""
+    rows = []
+    for entry in map(guarantee.get, guarantee.names()):
+        keys = ", ".join(f"`{f.name}`" for f in dataclasses.fields(entry))
+        rows.append((f"`{entry.name}`", f"`{entry.layout}`", keys, summary(entry), entry.citation))
+    return table(("Constraint", "Layout", "Parameters", "Gimbal angles", "Source"), rows)
 
 
 def cost_table() -> Iterable[str]:
@@ -192,6 +201,7 @@ TABLES: dict[str, Callable[[], Iterable[str]]] = {
     "layouts": layout_table,
     "metrics": metric_table,
     "controllers": controller_table,
+    "constraints": constraint_table,
     "costs": cost_table,
     "scenarios": scenario_table,
     "papers": paper_table,

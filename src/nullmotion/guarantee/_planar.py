@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -10,6 +11,7 @@ import numpy as np
 from nullmotion import linalg, ops
 from nullmotion.errors import InputError
 from nullmotion.guarantee.constraint import Constraint
+from nullmotion.guarantee.region import Box, Region
 
 
 @dataclass(frozen=True)
@@ -66,9 +68,22 @@ class PlanarConstraint(Constraint):
         """Return the squared row norms of A^+, one for each cosine."""
         return self.radial_squares(linalg.norm(h))
 
+    def claim(self, radius: float, torque_capability: float) -> tuple[Callable[[Any], Any], Region]:
+        """Return source over |h| alone: TC does not depend on the momentum's direction."""
+
+        def margins(x: Any) -> Any:
+            rows = [torque_capability**2 * s - 1.0 for s in self.radial_squares(x[0])]
+            return np.array([*rows, x[0] - float(self.n)])
+
+        return margins, Box((0.0,), (radius,))
+
     def radial_squares(self, H: Any) -> Any:
         """Return the squared row norms of A^+ at a momentum of size H."""
-        squared = [(c * c, k) for c, k in self.half(H)]
+        return self.squares_of(self.half(H))
+
+    def squares_of(self, half: list[tuple[Any, int]]) -> Any:
+        """Return the squared row norms of A^+ for the cosines of half the angles."""
+        squared = [(c * c, k) for c, k in half]
         along = sum(2.0 * k * q for q, k in squared) + float(self.n % 2)
         across = float(self.n) - along
         rows = [(1.0 - q) / (across * across) + q / (along * along) for q, _ in squared]

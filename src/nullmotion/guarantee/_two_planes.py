@@ -99,11 +99,9 @@ class TwoPlanes(Constraint):
                 found.append(v[0] * v[0] * size + 2.0 * v[0] * v[1] * across + v[1] * v[1])
         return np.array(found)
 
-    def margins(self, h: Any, torque_capability: Any) -> Any:
-        """Return values all <= 0 where TC is at least what is given and |h_x| <= extent."""
-        t = torque_capability
-        rows = [t * t * s - 1.0 for s in self.squares(h)]
-        return np.array([*rows, ops.absolute(h[0]) - self.extent])
+    def edges(self, h: Any) -> list[Any]:
+        """Return |h_x| - extent."""
+        return [ops.absolute(h[0]) - self.extent]
 
 
 def square_of(plane: Plane) -> Any:

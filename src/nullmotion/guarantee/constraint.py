@@ -9,6 +9,7 @@ Momenta here are divided by one CMG's momentum, torques by one CMG's momentum an
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, ClassVar
@@ -21,6 +22,7 @@ from nullmotion.array.model import CmgArray
 from nullmotion.compile import CompiledFunction, compile_function
 from nullmotion.compile.tangent import jvp
 from nullmotion.errors import InputError
+from nullmotion.guarantee.region import Ball, Region
 
 
 @dataclass(frozen=True)
@@ -77,9 +79,21 @@ class Constraint:
         """
         raise NotImplementedError
 
+    def edges(self, h: Any) -> list[Any]:
+        """Return values that are <= 0 inside the envelope, where `squares` do not show it."""
+        return []
+
     def margins(self, h: Any, torque_capability: Any) -> Any:
         """Return values that are all <= 0 just where TC is at least what is given; source."""
-        return np.array([torque_capability**2 * s - 1.0 for s in self.squares(h)])
+        rows = [torque_capability**2 * s - 1.0 for s in self.squares(h)]
+        return np.array([*rows, *self.edges(h)])
+
+    def claim(self, radius: float, torque_capability: float) -> tuple[Callable[[Any], Any], Region]:
+        """Return source and a region: TC holds in the ball if no value is above 0 there.
+
+        An entry whose torque capability depends on less than the momentum may say so here.
+        """
+        return lambda h: self.margins(h, torque_capability), Ball(radius, self._m)
 
     def gimbal_jacobian(self, h: Any) -> Any:
         """Return d angles / d h, (n, m): the augmented Jacobian's inverse on momenta; source."""

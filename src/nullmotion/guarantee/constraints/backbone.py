@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from nullmotion import ops
 from nullmotion.guarantee._planar import PlanarConstraint, checked_count
+from nullmotion.guarantee.region import Box, Region
 
 _STEPS = 18  # Newton from one side: halves the way while two roots look like one (H near n)
 
@@ -50,13 +52,29 @@ class Backbone(PlanarConstraint):
 
     def half(self, H: Any) -> list[tuple[Any, int]]:
         """Return the cosines of the positive half of the angles, the greatest angle first."""
-        return [(ops.cos(a), 1) for a in self._half_angles(H)]
+        return self._half_cosines(self.step_angle(H))
+
+    def claim(self, radius: float, torque_capability: float) -> tuple[Callable[[Any], Any], Region]:
+        """Return source over phi: where the momentum is at most the radius, TC holds.
+
+        H(phi) = sum cos delta_i falls from n to 0 as every |delta_i| grows within [0, pi).
+        """
+
+        def margins(x: Any) -> Any:
+            half = self._half_cosines(x[0])
+            beyond = radius - (2.0 * sum(c for c, _ in half) + float(self.n % 2))
+            rows = [torque_capability**2 * s - 1.0 for s in self.squares_of(half)]
+            return np.array([*(ops.minimum(row, beyond) for row in rows), radius - float(self.n)])
+
+        return margins, Box((0.0,), (2 * np.pi / self.n * (1 + 1e-15),))
 
     def offsets(self, H: Any) -> Any:
         """Return gimbal angles from the momentum's direction [rad], (n,), rising."""
-        half = self._half_angles(H)
+        half = self._half_angles(self.step_angle(H))
         return np.array([*[-a for a in half], *[0.0] * (self.n % 2), *half[::-1]])
 
-    def _half_angles(self, H: Any) -> list[Any]:
-        phi = self.step_angle(H)
+    def _half_cosines(self, phi: Any) -> list[tuple[Any, int]]:
+        return [(ops.cos(a), 1) for a in self._half_angles(phi)]
+
+    def _half_angles(self, phi: Any) -> list[Any]:
         return [(i - (self.n + 1) / 2) * phi for i in range(self.n, (self.n + 1) // 2, -1)]

@@ -75,6 +75,10 @@ class OrthogonalPairs(Constraint):
             good = ops.logical_and(good, ops.less(square, 4.0))
         return good
 
+    def edges(self, h: Any) -> list[Any]:
+        """Return |h_i| - extent."""
+        return [ops.absolute(c) - self.extent for c in h]
+
     def squares(self, h: Any) -> Any:
         """Return the squared row norms; a plane's rows of P are at right angles."""
         found = []

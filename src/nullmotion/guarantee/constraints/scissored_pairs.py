@@ -49,5 +49,9 @@ class ScissoredPairs(Constraint):
         """Return the squared row norms, one a pair."""
         return np.array([1.0 / s for s in self._slack(h)])
 
+    def edges(self, h: Any) -> list[Any]:
+        """Return |h_i| - 2."""
+        return [ops.absolute(c) - 2.0 for c in h]
+
     def _slack(self, h: Any) -> list[Any]:
         return [4.0 - c * c for c in h]
