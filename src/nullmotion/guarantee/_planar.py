@@ -77,6 +77,10 @@ class PlanarConstraint(Constraint):
 
         return margins, Box((0.0,), (radius,))
 
+    def momentum_of(self, point: Any) -> Any:
+        """Return the momentum of size point[0] along x."""
+        return np.array([point[0], 0.0 * point[0]])
+
     def radial_squares(self, H: Any) -> Any:
         """Return the squared row norms of A^+ at a momentum of size H."""
         return self.squares_of(self.half(H))

@@ -11,18 +11,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from nullmotion import ops
 from nullmotion.array import layouts
 from nullmotion.array.model import CmgArray
-from nullmotion.compile import CompiledFunction, compile_function
 from nullmotion.compile.tangent import jvp
 from nullmotion.errors import InputError
+from nullmotion.guarantee.evaluate import compiled
 from nullmotion.guarantee.region import Ball, Region
+
+if TYPE_CHECKING:
+    from nullmotion.guarantee.certificate import Certificate
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,11 @@ class Constraint:
 
         An entry whose torque capability depends on less than the momentum may say so here.
         """
-        return lambda h: self.margins(h, torque_capability), Ball(radius, self._m)
+        return lambda h: self.margins(h, torque_capability), Ball(radius, self.m)
+
+    def momentum_of(self, point: Any) -> Any:
+        """Return the momentum (m,) that a point of the claim's region stands for."""
+        return point
 
     def gimbal_jacobian(self, h: Any) -> Any:
         """Return d angles / d h, (n, m): the augmented Jacobian's inverse on momenta; source."""
@@ -119,7 +124,7 @@ class Constraint:
             InputError: For a momentum outside the constrained envelope.
         """
         momenta, shape = self._checked(h)
-        angles, inside = _compiled(self).angles(momenta)
+        angles, inside = compiled(self).angles(momenta)
         if not inside.all():
             worst = momenta[np.argmin(inside)]
             raise InputError("h", worst.tolist(), f"a momentum inside the envelope of {self.name}")
@@ -128,11 +133,30 @@ class Constraint:
     def torque_capability(self, h: Any) -> Any:
         """Return the torque capability at momenta (..., m), a float or (...); 0.0 outside."""
         momenta, shape = self._checked(h)
-        return _compiled(self).capability(momenta).reshape(shape)[()]
+        return compiled(self).capability(momenta).reshape(shape)[()]
+
+    def certificate(
+        self,
+        radius: float,
+        torque_capability: float,
+        *,
+        progress: Callable[[float], None] | None = None,
+    ) -> Certificate:
+        """Prove that TC is at least what is given wherever |h| <= radius.
+
+        By branch and bound over boxes, each bounded by interval arithmetic through this
+        constraint's own source; a false claim comes back with a momentum that refutes it.
+
+        Raises:
+            InputError: For a radius or torque capability that is not a finite number above 0.
+        """
+        from nullmotion.guarantee.certificate import certify
+
+        return certify(self, radius, torque_capability, progress)
 
     def _checked(self, h: Any) -> tuple[np.ndarray, tuple[int, ...]]:
         momenta = np.asarray(h, float)
-        m = self._m
+        m = self.m
         if momenta.ndim == 0 or momenta.shape[-1] != m:
             raise InputError("h", momenta.tolist(), f"{m} components of momentum on the last axis")
         if not np.isfinite(momenta).all():
@@ -140,47 +164,6 @@ class Constraint:
         return momenta.reshape(-1, m), momenta.shape[:-1]
 
     @property
-    def _m(self) -> int:
+    def m(self) -> int:
+        """Number of torque dimensions."""
         return self.array().m
-
-
-def capability(constraint: Constraint, h: Any) -> Any:
-    """Return the torque capability at a momentum (m,), 0 outside; source."""
-    greatest = ops.amax(np.asarray(constraint.squares(h)))
-    good = ops.logical_and(constraint.inside(h), ops.less(0.0, greatest))
-    good = ops.logical_and(good, ops.less(greatest, np.inf))
-    return ops.where(good, 1.0 / ops.sqrt(ops.where(good, greatest, 1.0)), 0.0)
-
-
-class _Compiled:
-    """Kernels of one constraint, made when first asked for."""
-
-    def __init__(self, constraint: Constraint) -> None:
-        self._constraint = constraint
-        self._made: dict[str, CompiledFunction] = {}
-
-    def _kernel(self, name: str, source: Any) -> CompiledFunction:
-        if name not in self._made:
-            self._made[name] = compile_function(source, np.zeros(self._constraint._m))
-        return self._made[name]
-
-    def angles(self, h: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return gimbal angles and whether each momentum is inside."""
-        c = self._constraint
-
-        def source(h: Any) -> tuple[Any, Any]:
-            return c.angles(h), ops.where(c.inside(h), 1.0, 0.0)
-
-        angles, inside = self._kernel("angles", source)(h)
-        return angles, inside > 0.5
-
-    def capability(self, h: np.ndarray) -> np.ndarray:
-        """Return torque capabilities."""
-        c = self._constraint
-        found: np.ndarray = self._kernel("capability", lambda h: capability(c, h))(h)
-        return found
-
-
-@lru_cache(maxsize=64)
-def _compiled(constraint: Constraint) -> _Compiled:
-    return _Compiled(constraint)

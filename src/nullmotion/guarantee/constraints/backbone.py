@@ -68,6 +68,11 @@ class Backbone(PlanarConstraint):
 
         return margins, Box((0.0,), (2 * np.pi / self.n * (1 + 1e-15),))
 
+    def momentum_of(self, point: Any) -> Any:
+        """Return the momentum along x of the arc with step point[0]."""
+        size = 2.0 * sum(c for c, _ in self._half_cosines(point[0])) + float(self.n % 2)
+        return np.array([size, 0.0 * size])
+
     def offsets(self, H: Any) -> Any:
         """Return gimbal angles from the momentum's direction [rad], (n,), rising."""
         half = self._half_angles(self.step_angle(H))

@@ -1,0 +1,140 @@
+"""A certificate: torque capability proven over a ball of momentum, to be checked again."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from nullmotion.errors import InputError
+from nullmotion.guarantee.constraint import Constraint
+
+_FORMAT = "nullmotion certificate 1"
+_METHOD = "interval arithmetic in IEEE doubles, every operation rounded outward; branch and bound"
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """What was claimed, whether it holds, and the boxes that show it.
+
+    Attributes:
+        constraint: Name of the constraint function.
+        parameters: Its fields.
+        radius: Radius of the ball |h| <= radius, in units of one CMG's momentum.
+        torque_capability: Claimed lower bound of TC inside.
+        proven: Whether every box of a partition of the ball was proven.
+        boxes: Number of boxes of the partition.
+        depth: Halvings from the first box to the smallest.
+        tree: The partition, for `check`: see `nullmotion.guarantee.proof`.
+        seconds: Time it took, compilation included [s].
+        reason: Why it was not proven; empty if it was.
+        counterexample: A momentum inside at which the claim is false, if one was found.
+        counterexample_capability: TC there.
+    """
+
+    constraint: str
+    parameters: dict[str, Any]
+    radius: float
+    torque_capability: float
+    proven: bool
+    boxes: int
+    depth: int
+    tree: str
+    seconds: float
+    reason: str = ""
+    counterexample: tuple[float, ...] | None = None
+    counterexample_capability: float | None = None
+
+    @property
+    def statement(self) -> str:
+        """The claim and what became of it, in a sentence."""
+        claim = f"TC >= {self.torque_capability:g} for every |h| <= {self.radius:g}"
+        if self.proven:
+            return f"{claim}: proven with {self.boxes:,} boxes"
+        if self.counterexample is None:
+            return f"{claim}: not proven ({self.reason}, {self.boxes:,} boxes)"
+        where = ", ".join(f"{v:.6g}" for v in self.counterexample)
+        return f"{claim}: false, TC = {self.counterexample_capability:.6g} at h = ({where})"
+
+    def save(self, path: str | Path) -> None:
+        """Write it as JSON, to a temporary name first."""
+        file = Path(path)
+        record = {"format": _FORMAT, "method": _METHOD, "statement": self.statement}
+        text = json.dumps(record | dataclasses.asdict(self), indent=1)
+        part = file.with_name(f".{file.name}.part")
+        part.write_text(text + "\n", encoding="utf-8")
+        os.replace(part, file)
+
+    def check(self, progress: Callable[[float], None] | None = None) -> bool:
+        """Return whether the boxes do show the claim, in ball arithmetic of 80 bits.
+
+        Every box is rebuilt from the tree and evaluated again, by python-flint; nothing of
+        the arithmetic that found the proof is used.
+        """
+        from nullmotion.guarantee import check, create
+
+        function, region = create(self.constraint, **self.parameters).claim(
+            self.radius, self.torque_capability
+        )
+        return self.proven and check.check(function, region, self.tree, progress=progress).ok
+
+
+def load(path: str | Path) -> Certificate:
+    """Return a certificate from its file.
+
+    Raises:
+        InputError: For a file that is not one.
+    """
+    file = Path(path)
+    try:
+        record = json.loads(file.read_text(encoding="utf-8"))
+        if record.get("format") != _FORMAT:
+            raise ValueError("not a certificate")
+        return Certificate(**{f.name: record[f.name] for f in dataclasses.fields(Certificate)})
+    except (OSError, ValueError, KeyError, AttributeError) as error:
+        raise InputError("certificate", str(path), f"a file that --out wrote ({error})") from None
+
+
+def certify(
+    constraint: Constraint,
+    radius: float,
+    torque_capability: float,
+    progress: Callable[[float], None] | None = None,
+) -> Certificate:
+    """Prove that TC is at least ``torque_capability`` wherever |h| <= ``radius``.
+
+    Raises:
+        InputError: For a radius or torque capability that is not a finite number above 0.
+    """
+    from nullmotion.guarantee.evaluate import capability
+    from nullmotion.guarantee.proof import prove
+
+    for key, value in (("radius", radius), ("torque_capability", torque_capability)):
+        if not (np.isfinite(value) and value > 0):
+            raise InputError(key, value, "a finite number above 0")
+    function, region = constraint.claim(float(radius), float(torque_capability))
+    found = prove(function, region, progress=progress)
+    point = found.counterexample
+    momentum = None if point is None else constraint.momentum_of(np.asarray(point[0], float))
+    return Certificate(
+        constraint=constraint.name,
+        parameters=dataclasses.asdict(constraint),
+        radius=float(radius),
+        torque_capability=float(torque_capability),
+        proven=found.proven,
+        boxes=found.boxes,
+        depth=found.depth,
+        tree=found.tree if found.proven else "",
+        seconds=found.seconds,
+        reason="" if found.proven else found.reason,
+        counterexample=None if momentum is None else tuple(float(v) for v in momentum),
+        counterexample_capability=(
+            None if momentum is None else float(capability(constraint, momentum))
+        ),
+    )
