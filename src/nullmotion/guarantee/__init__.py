@@ -8,13 +8,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-# from nullmotion.array.capability import torque_capability
+from nullmotion.array.capability import direction_capability, torque_capability
 from nullmotion.registry import Registry
 
 if TYPE_CHECKING:
     from nullmotion.guarantee.constraint import Constraint
 
-__all__ = ["create", "get", "load_file", "names", "registry"]
+__all__ = [
+    "create",
+    "direction_capability",
+    "get",
+    "load_file",
+    "names",
+    "registry",
+    "torque_capability",
+]
 
 registry = Registry(
     "constraint", "nullmotion.guarantee.constraints", "nullmotion.guarantee.constraint.Constraint"
