@@ -18,6 +18,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 
 import accuracy
+import guarantees
 import latency
 import plan_search
 import throughput
@@ -49,6 +50,7 @@ def measure(quick: bool) -> tuple[list[Row], str]:
         "Threads": throughput.threads(quick),
         "Waiting times": latency.rows(quick),
         "Plans, one core": plan_search.rows(quick),
+        "Torque capability and certificates": guarantees.rows(quick),
         "Accuracy": accuracy.rows(quick),
     }
     everything = []
