@@ -17,6 +17,7 @@ singular at r = 0 and where a plane is saturated, and nowhere else.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -24,6 +25,9 @@ import numpy as np
 
 from nullmotion import ops
 from nullmotion.guarantee.constraint import Constraint
+from nullmotion.guarantee.region import Ball, Region
+
+_NEAR = 1e-3  # momentum of a plane, in units of one CMG's, that counts as none or as saturated
 
 
 class Plane(NamedTuple):
@@ -102,6 +106,19 @@ class TwoPlanes(Constraint):
     def edges(self, h: Any) -> list[Any]:
         """Return |h_x| - extent."""
         return [ops.absolute(h[0]) - self.extent]
+
+    def regular_claim(self, radius: float) -> tuple[Callable[[Any], Any], Region]:
+        """Return source over the ball: a plane is saturated, or no plane has r = 0.
+
+        Both within `_NEAR`; the planes' determinant is r sqrt(4 - r^2)/2 or the like.
+        """
+
+        def margins(h: Any) -> Any:
+            squares = [(square_of(plane), plane.cmgs) for plane in self.planes(h)]
+            saturated = ops.minimum(*((k - _NEAR) ** 2 - s for s, k in squares))
+            return np.array([ops.minimum(_NEAR**2 - s, saturated) for s, _ in squares])
+
+        return margins, Ball(radius, 3)
 
 
 def square_of(plane: Plane) -> Any:

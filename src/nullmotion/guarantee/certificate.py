@@ -1,4 +1,7 @@
-"""A certificate: torque capability proven over a ball of momentum, to be checked again."""
+"""A certificate: something proven over a ball of momentum, to be checked again.
+
+Two things are claimed: a torque capability, and that nothing but saturation is singular.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +11,17 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from nullmotion.errors import InputError
 from nullmotion.guarantee.constraint import Constraint
+from nullmotion.guarantee.evaluate import capability
+from nullmotion.guarantee.region import Region
 
 _FORMAT = "nullmotion certificate 1"
+Kind = Literal["torque capability", "no internal singularity"]
 _METHOD = "interval arithmetic in IEEE doubles, every operation rounded outward; branch and bound"
 
 
@@ -24,10 +30,11 @@ class Certificate:
     """What was claimed, whether it holds, and the boxes that show it.
 
     Attributes:
+        kind: What is claimed.
         constraint: Name of the constraint function.
         parameters: Its fields.
         radius: Radius of the ball |h| <= radius, in units of one CMG's momentum.
-        torque_capability: Claimed lower bound of TC inside.
+        torque_capability: Claimed lower bound of TC inside; 0 where none is claimed.
         proven: Whether every box of a partition of the ball was proven.
         boxes: Number of boxes of the partition.
         depth: Halvings from the first box to the smallest.
@@ -38,6 +45,7 @@ class Certificate:
         counterexample_capability: TC there.
     """
 
+    kind: Kind
     constraint: str
     parameters: dict[str, Any]
     radius: float
@@ -54,7 +62,10 @@ class Certificate:
     @property
     def statement(self) -> str:
         """The claim and what became of it, in a sentence."""
-        claim = f"TC >= {self.torque_capability:g} for every |h| <= {self.radius:g}"
+        what = f"TC >= {self.torque_capability:g}"
+        if self.kind == "no internal singularity":
+            what = "no singularity but saturation"
+        claim = f"{what} for every |h| <= {self.radius:g}"
         if self.proven:
             return f"{claim}: proven with {self.boxes:,} boxes"
         if self.counterexample is None:
@@ -62,10 +73,15 @@ class Certificate:
         where = ", ".join(f"{v:.6g}" for v in self.counterexample)
         return f"{claim}: false, TC = {self.counterexample_capability:.6g} at h = ({where})"
 
+    def __bool__(self) -> bool:
+        """Whether the claim is proven."""
+        return self.proven
+
     def save(self, path: str | Path) -> None:
         """Write it as JSON, to a temporary name first."""
         file = Path(path)
         record = {"format": _FORMAT, "method": _METHOD, "statement": self.statement}
+        record |= {"region": f"|h| <= {self.radius!r} h0", "units": "h0, h0 rate_limit"}
         text = json.dumps(record | dataclasses.asdict(self), indent=1)
         part = file.with_name(f".{file.name}.part")
         part.write_text(text + "\n", encoding="utf-8")
@@ -79,10 +95,17 @@ class Certificate:
         """
         from nullmotion.guarantee import check, create
 
-        function, region = create(self.constraint, **self.parameters).claim(
-            self.radius, self.torque_capability
-        )
+        constraint = create(self.constraint, **self.parameters)
+        function, region = _claim(constraint, self.kind, self.radius, self.torque_capability)
         return self.proven and check.check(function, region, self.tree, progress=progress).ok
+
+
+def _claim(
+    constraint: Constraint, kind: Kind, radius: float, torque_capability: float
+) -> tuple[Callable[[Any], Any], Region]:
+    if kind == "torque capability":
+        return constraint.claim(radius, torque_capability)
+    return constraint.regular_claim(radius)
 
 
 def load(path: str | Path) -> Certificate:
@@ -104,37 +127,46 @@ def load(path: str | Path) -> Certificate:
 def certify(
     constraint: Constraint,
     radius: float,
-    torque_capability: float,
+    torque_capability: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Certificate:
     """Prove that TC is at least ``torque_capability`` wherever |h| <= ``radius``.
 
+    Without a torque capability: that nothing but saturation is singular there.
+
     Raises:
         InputError: For a radius or torque capability that is not a finite number above 0.
     """
-    from nullmotion.guarantee.evaluate import capability
     from nullmotion.guarantee.proof import prove
 
     for key, value in (("radius", radius), ("torque_capability", torque_capability)):
-        if not (np.isfinite(value) and value > 0):
+        if value is not None and not (np.isfinite(value) and value > 0):
             raise InputError(key, value, "a finite number above 0")
-    function, region = constraint.claim(float(radius), float(torque_capability))
+    kind: Kind = "torque capability" if torque_capability else "no internal singularity"
+    size, least = float(radius), float(torque_capability or 0.0)
+    function, region = _claim(constraint, kind, size, least)
     found = prove(function, region, progress=progress)
-    point = found.counterexample
-    momentum = None if point is None else constraint.momentum_of(np.asarray(point[0], float))
     return Certificate(
+        kind=kind,
         constraint=constraint.name,
         parameters=dataclasses.asdict(constraint),
-        radius=float(radius),
-        torque_capability=float(torque_capability),
+        radius=size,
+        torque_capability=least,
         proven=found.proven,
         boxes=found.boxes,
         depth=found.depth,
         tree=found.tree if found.proven else "",
         seconds=found.seconds,
         reason="" if found.proven else found.reason,
-        counterexample=None if momentum is None else tuple(float(v) for v in momentum),
-        counterexample_capability=(
-            None if momentum is None else float(capability(constraint, momentum))
-        ),
+        **_refutation(constraint, found.counterexample),
     )
+
+
+def _refutation(constraint: Constraint, counterexample: Any) -> dict[str, Any]:
+    if counterexample is None:
+        return {}
+    momentum = constraint.momentum_of(np.asarray(counterexample[0], float))
+    return {
+        "counterexample": tuple(float(v) for v in momentum),
+        "counterexample_capability": float(capability(constraint, momentum)),
+    }

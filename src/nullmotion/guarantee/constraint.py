@@ -25,6 +25,8 @@ from nullmotion.guarantee.region import Ball, Region
 if TYPE_CHECKING:
     from nullmotion.guarantee.certificate import Certificate
 
+_BARELY = 0.01  # torque capability that shows an array regular
+
 
 @dataclass(frozen=True)
 class Constraint:
@@ -96,6 +98,10 @@ class Constraint:
         """
         return lambda h: self.margins(h, torque_capability), Ball(radius, self.m)
 
+    def regular_claim(self, radius: float) -> tuple[Callable[[Any], Any], Region]:
+        """Return source and a region: nothing but saturation is singular if no value is above 0."""
+        return self.claim(radius, _BARELY)
+
     def momentum_of(self, point: Any) -> Any:
         """Return the momentum (m,) that a point of the claim's region stands for."""
         return point
@@ -138,14 +144,16 @@ class Constraint:
     def certificate(
         self,
         radius: float,
-        torque_capability: float,
+        torque_capability: float | None = None,
         *,
         progress: Callable[[float], None] | None = None,
     ) -> Certificate:
         """Prove that TC is at least what is given wherever |h| <= radius.
 
-        By branch and bound over boxes, each bounded by interval arithmetic through this
-        constraint's own source; a false claim comes back with a momentum that refutes it.
+        Without a torque capability: that inside the envelope nothing but saturation is
+        singular there. By branch and bound over boxes, each bounded by interval arithmetic
+        through this constraint's own source; a false claim comes back with a momentum that
+        refutes it.
 
         Raises:
             InputError: For a radius or torque capability that is not a finite number above 0.
