@@ -87,11 +87,14 @@ class PlanarConstraint(Constraint):
 
     def squares_of(self, half: list[tuple[Any, int]]) -> Any:
         """Return the squared row norms of A^+ for the cosines of half the angles."""
-        squared = [(c * c, k) for c, k in half]
-        along = sum(2.0 * k * q for q, k in squared) + float(self.n % 2)
-        across = float(self.n) - along
-        rows = [(1.0 - q) / (across * across) + q / (along * along) for q, _ in squared]
+        along, across = self.spread(half)
+        rows = [(1.0 - c * c) / (across * across) + c * c / (along * along) for c, _ in half]
         return np.array([*rows, *([1.0 / (along * along)] * (self.n % 2))])
+
+    def spread(self, half: list[tuple[Any, int]]) -> tuple[Any, Any]:
+        """Return the eigenvalues C and S of A A^T along and across the momentum."""
+        along = sum(2.0 * k * (c * c) for c, k in half) + float(self.n % 2)
+        return along, float(self.n) - along
 
 
 def checked_count(n: Any) -> None:

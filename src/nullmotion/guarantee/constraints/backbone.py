@@ -63,7 +63,13 @@ class Backbone(PlanarConstraint):
         def margins(x: Any) -> Any:
             half = self._half_cosines(x[0])
             beyond = radius - (2.0 * sum(c for c, _ in half) + float(self.n % 2))
-            rows = [torque_capability**2 * s - 1.0 for s in self.squares_of(half)]
+            # cleared of fractions: the arc closes up to a line at phi = 0, beyond the radius
+            along, across = (v * v for v in self.spread(half))
+            squared = [c * c for c, _ in half] + [1.0] * (self.n % 2)
+            rows = [
+                torque_capability**2 * ((1.0 - q) * along + q * across) - along * across
+                for q in squared
+            ]
             return np.array([*(ops.minimum(row, beyond) for row in rows), radius - float(self.n)])
 
         return margins, Box((0.0,), (2 * np.pi / self.n * (1 + 1e-15),))

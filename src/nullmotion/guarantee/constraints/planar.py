@@ -58,7 +58,7 @@ class Planar(PlanarConstraint):
         n, critical = self.n, self.critical_momentum
         odd = n % 2
         x = (H - odd) / (n - odd)
-        spread = ops.sqrt(2.0 * ops.maximum(critical - H, 0.0) * (H + critical - 2 * odd))
+        spread = ops.sqrt(ops.maximum(2.0 * (critical - H) * (H + critical - 2 * odd), 0.0))
         return [(x + factor * spread, count) for factor, count in _spreads(n)]
 
     def without(self, failed: int) -> Planar:
