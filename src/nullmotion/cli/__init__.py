@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from nullmotion.cli import catalogue, compare, demo, paper, plan, rerun, run
+from nullmotion.cli import catalogue, compare, demo, guarantee, paper, plan, rerun, run
 
 app = typer.Typer(
     name="nullmotion",
@@ -48,6 +48,7 @@ app.command("run")(run.run)
 app.command("rerun")(rerun.rerun)
 app.command("compare")(compare.compare)
 app.command("plan")(plan.plan)
+app.command("guarantee")(guarantee.guarantee)
 app.command("list")(catalogue.list_)
 app.command("paper")(paper.paper)
 
