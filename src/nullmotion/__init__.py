@@ -35,6 +35,7 @@ _MODULES = {
     "ops": "nullmotion.ops",
     "plan": "nullmotion.plan",
     "singularity": "nullmotion.singularity",
+    "sizing": "nullmotion.sizing",
 }
 
 __all__ = ["__version__", *_WHERE, *_MODULES]
