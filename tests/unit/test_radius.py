@@ -69,7 +69,7 @@ def test_planar_in_closed_form(n):
     assert planar.torque_capability([size, 0.0]) == pytest.approx(1.0, abs=1e-7)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("name", ["box90-cubic", "box90-designed", "roof6", "orthogonal-pairs"])
 def test_no_ray_is_lost_earlier(name, rng):
     """20,000 random rays come close to the radius and not below it; TC on it is the level."""

@@ -63,7 +63,7 @@ def size_report(sizing: Any, path: str | Path) -> Path:
     if any(row.curve for row in rows):
         drawn = [charts.add(_panel(rows))]
         parts.append(page.section("Momentum and gimbal rate", grid(drawn), id="trade"))
-    parts += [_proofs(rows), _tried(rows), page.scenario(sizing.requirement.source.text)]
+    parts += [_proofs(rows), _tried(rows), _requirement(sizing.requirement.source.text)]
     return page.write(path, page.document(sizing.requirement.title, parts, charts, page.versions()))
 
 
@@ -141,6 +141,11 @@ def _panel(rows: Sequence[Any]) -> Panel:
         note="The design is where h0 to the power of momentum_weight times the rate is least.",
         log=True,
     )
+
+
+def _requirement(content: str) -> Markup:
+    shown = tag("pre", tag("code", content), tabindex="0", aria_label="Requirement file")
+    return page.section("Requirement", page.details("Requirement file", shown), id="requirement")
 
 
 def _proofs(rows: Sequence[Any]) -> Markup:
