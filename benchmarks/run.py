@@ -20,6 +20,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 import accuracy
 import guarantees
 import latency
+import lookahead
 import plan_search
 import throughput
 from common import HEAD, Row
@@ -51,6 +52,7 @@ def measure(quick: bool) -> tuple[list[Row], str]:
         "Waiting times": latency.rows(quick),
         "Plans, one core": plan_search.rows(quick),
         "Torque capability and certificates": guarantees.rows(quick),
+        "Looking ahead, one core": lookahead.rows(quick),
         "Accuracy": accuracy.rows(quick),
     }
     everything = []
