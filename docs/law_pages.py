@@ -41,6 +41,21 @@ print(f"off-axis torque, peak: {found['max_off_axis_torque_fraction']:.4f} of th
 print(f"largest rate step: {found['max_rate_step_rad_s']:.3f} rad/s")
 ```
 """
+_RAMP = """It does not steer the pyramid. From zero momentum, constant torque drives a box-90
+towards its envelope; the status says what did not hold on the way.
+
+```python run
+import nullmotion as nm
+
+scenario = nm.load_scenario("box90-ramp", {"law.name": "NAME"})
+run = nm.simulate(scenario)
+found = run.summary()
+print(f"{found['stop_reason']} at {found['duration_s']:.2f} s; status:", ", ".join(found["status"]))
+print("momentum [N m s]:", run.momentum[-1].round(3) + 0.0)
+print(f"least sigma_min: {found['min_sigma_min']:.4f}")
+print(f"off-axis torque, peak: {found['max_off_axis_torque_fraction']:.4f} of the command")
+```
+"""
 
 
 def write(folder: Path) -> list[dict[str, str]]:
@@ -121,7 +136,7 @@ def _parameters(law: type[Law], arguments: Mapping[str, str]) -> Iterable[str]:
 
 def _default(field: dataclasses.Field[Any]) -> str:
     if field.default is dataclasses.MISSING:
-        return "required"
+        return "required" if field.default_factory is dataclasses.MISSING else "none"
     if isinstance(field.default, tuple):
         return ", ".join(f"{v:.6g}" for v in field.default)
     return f"{field.default:.6g}" if isinstance(field.default, float) else f"`{field.default}`"
@@ -147,12 +162,11 @@ def _where_exact(law: type[Law]) -> str:
 
 
 def _needs_values(law: type[Law]) -> bool:
-    return any(f.init and f.default is dataclasses.MISSING for f in dataclasses.fields(law))
+    return any(_default(f) == "required" for f in dataclasses.fields(law) if f.init)
 
 
 def _example(law: type[Law]) -> str:
-    if _needs_values(law) or law().supports(layouts.pyramid()):
-        return (
-            f"`nm.laws.create({law.name!r}, ...)` makes one. It does not steer the pyramid as is."
-        )
-    return _EXAMPLE.replace("NAME", law.name)
+    for array, text in ((layouts.pyramid(), _EXAMPLE), (layouts.box90(), _RAMP)):
+        if not _needs_values(law) and not law().supports(array):
+            return text.replace("NAME", law.name)
+    return f"`nm.laws.create({law.name!r}, ...)` makes one. It does not steer the pyramid as is."

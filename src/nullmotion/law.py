@@ -73,6 +73,8 @@ class Law:
         claims: What it promises.
         information: What it reads beyond delta, hdot, t and period.
         traceable: False for a law that solves a problem while it runs (a host law).
+        knows_axes: True for a law that must know the axes of the array while it is traced:
+            they cannot differ between the runs of a batch.
     """
 
     name: ClassVar[str] = ""
@@ -82,6 +84,7 @@ class Law:
     claims: ClassVar[frozenset[Claim]] = frozenset()
     information: ClassVar[tuple[str, ...]] = ()
     traceable: ClassVar[bool] = True
+    knows_axes: ClassVar[bool] = False
 
     @property
     def information_used(self) -> tuple[str, ...]:

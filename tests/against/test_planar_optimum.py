@@ -56,8 +56,9 @@ def _best(n: int, H: float, starts: int, rng: np.random.Generator) -> float:
     return best
 
 
-@pytest.mark.sampled(4)
-@pytest.mark.parametrize("n", range(4, 16))
+@pytest.mark.parametrize(
+    "n", [n if n in (5, 6) else pytest.param(n, marks=pytest.mark.slow) for n in range(4, 16)]
+)
 @pytest.mark.filterwarnings("ignore")
 def test_sqp_never_beats_the_closed_form(n: int) -> None:
     """In the static region, just beyond H_c and up to .99 n."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nullmotion import laws
+from nullmotion import laws, layouts
 from nullmotion.campaign import compare
 from nullmotion.scenario import load_scenario
 from nullmotion.sim import run
@@ -19,7 +19,11 @@ VALUES = {
 
 
 QUICK = ("pseudo-inverse", "dsea")
-NAMES = [n if n in QUICK else pytest.param(n, marks=pytest.mark.slow) for n in laws.names()]
+NAMES = [
+    n if n in QUICK else pytest.param(n, marks=pytest.mark.slow)
+    for n in laws.names()
+    if not laws.create(n).supports(layouts.create("pyramid"))
+]
 
 
 @pytest.mark.parametrize("law", NAMES)

@@ -7,7 +7,18 @@ from typing import Annotated
 
 import typer
 
-from nullmotion.cli import catalogue, compare, demo, guarantee, paper, plan, rerun, run
+from nullmotion.cli import (
+    catalogue,
+    compare,
+    demo,
+    design,
+    guarantee,
+    paper,
+    plan,
+    rerun,
+    run,
+    size,
+)
 
 app = typer.Typer(
     name="nullmotion",
@@ -49,6 +60,8 @@ app.command("rerun")(rerun.rerun)
 app.command("compare")(compare.compare)
 app.command("plan")(plan.plan)
 app.command("guarantee")(guarantee.guarantee)
+app.add_typer(design.app, name="design")
+app.command("size")(size.size)
 app.command("list")(catalogue.list_)
 app.command("paper")(paper.paper)
 

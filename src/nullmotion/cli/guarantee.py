@@ -116,7 +116,7 @@ def _rows(
         )
     else:
         assert torque_capability is not None
-        found = search.guaranteed_radius(made, torque_capability)
+        found = table.largest_radius(made, torque_capability)
         proof = table.prove_radius(made, torque_capability, found.value, progress)
     found = search.guaranteed_radius(made, proof.torque_capability)
     momentum = tuple(map(float, found.momentum))

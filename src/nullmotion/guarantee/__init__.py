@@ -12,12 +12,16 @@ from nullmotion.array.capability import direction_capability, torque_capability
 from nullmotion.registry import Registry
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from nullmotion.guarantee.certificate import Certificate
     from nullmotion.guarantee.constraint import Constraint
 
 __all__ = [
     "create",
     "direction_capability",
     "get",
+    "load_certificate",
     "load_file",
     "names",
     "registry",
@@ -45,3 +49,14 @@ def create(name: str, **parameters: Any) -> Constraint:
     """
     made: Constraint = registry.create(name, **parameters)
     return made
+
+
+def load_certificate(path: str | Path) -> Certificate:
+    """Return a certificate from its file; its method `check` confirms it.
+
+    Raises:
+        InputError: For a file that is not one.
+    """
+    from nullmotion.guarantee import certificate
+
+    return certificate.load(path)

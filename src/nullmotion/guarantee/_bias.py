@@ -26,19 +26,35 @@ def even_polynomial(coefficients: Sequence[float], x: Any) -> tuple[Any, Any]:
 
 def even_terms(terms: Sequence[Term], extent: float, h: Any) -> tuple[Any, Any]:
     """Return sum c X^i Y^j Z^k with X = (h_x/extent)^2 and so on, and its gradient; source."""
-    squares = [(c * c) * (1.0 / extent**2) for c in h]
+    return _terms(terms, *_squares(extent, h))
+
+
+def tilted_terms(terms: Sequence[Term], extent: float, h: Any) -> tuple[Any, Any]:
+    """Return sum c x^i Y^j Z^k with x = h_x/extent, Y = (h_y/extent)^2, ...; source."""
+    bases, steps = _squares(extent, h)
+    bases[0], steps[0] = h[0] * (1.0 / extent), 1.0 / extent
+    return _terms(terms, bases, steps)
+
+
+def _squares(extent: float, h: Any) -> tuple[list[Any], list[Any]]:
+    """Return (h_i/extent)^2 and their derivatives."""
+    return [(c * c) * (1.0 / extent**2) for c in h], [2.0 / extent**2 * c for c in h]
+
+
+def _terms(terms: Sequence[Term], bases: list[Any], steps: list[Any]) -> tuple[Any, Any]:
+    """Return a polynomial in three variables and its gradient, their derivatives being steps."""
     value: Any = 0.0
     slopes: list[Any] = [0.0, 0.0, 0.0]
     for *powers, c in terms:
-        factors = [ops.power(s, p) if p else 1.0 for s, p in zip(squares, powers, strict=True)]
+        factors = [ops.power(s, p) if p else 1.0 for s, p in zip(bases, powers, strict=True)]
         value = value + c * (factors[0] * (factors[1] * factors[2]))
         for axis in range(3):
             p = powers[axis]
             if p:
-                lowered = ops.power(squares[axis], p - 1) if p > 1 else 1.0
+                lowered = ops.power(bases[axis], p - 1) if p > 1 else 1.0
                 others = factors[(axis + 1) % 3] * factors[(axis + 2) % 3]
                 slopes[axis] = slopes[axis] + c * p * (lowered * others)
-    return value, np.array([2.0 / extent**2 * h[i] * slopes[i] for i in range(3)])
+    return value, np.array([step * slope for step, slope in zip(steps, slopes, strict=True)])
 
 
 def checked_coefficients(record: Any, key: str) -> None:

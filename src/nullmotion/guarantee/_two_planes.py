@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -43,8 +43,10 @@ class Plane(NamedTuple):
 class TwoPlanes(Constraint):
     """Base of box-90 and roof-6 constraints; an entry gives `bias` and `extent`."""
 
-    #: CMGs in the x-y plane and in the x-z plane
-    counts: ClassVar[tuple[int, int]] = (2, 2)
+    @property
+    def counts(self) -> tuple[int, int]:
+        """CMGs in the x-y plane and in the x-z plane."""
+        return 2, 2
 
     def bias(self, h: Any) -> tuple[Any, Any]:
         """Return Psi and its gradient (3,) at a momentum; source."""
@@ -97,11 +99,14 @@ class TwoPlanes(Constraint):
         """Return the squared row norms of `gimbal_jacobian`, without a middle CMG's (least)."""
         found = []
         for plane in self.planes(h):
-            a = plane.slope[0]
-            size, across = a @ a, a @ plane.slope[1]  # P P^T; the second row is a unit vector
             for v in outer_rates(plane):
-                found.append(v[0] * v[0] * size + 2.0 * v[0] * v[1] * across + v[1] * v[1])
+                row = v[0] * plane.slope[0] + v[1] * plane.slope[1]
+                found.append(row @ row)
         return np.array(found)
+
+    def parts(self, h: Any) -> list[Any]:
+        """Return the planes' momenta."""
+        return [np.array([plane.x, plane.other]) for plane in self.planes(h)]
 
     def edges(self, h: Any) -> list[Any]:
         """Return |h_x| - extent."""

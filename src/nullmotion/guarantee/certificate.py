@@ -17,7 +17,6 @@ import numpy as np
 
 from nullmotion.errors import InputError
 from nullmotion.guarantee.constraint import Constraint
-from nullmotion.guarantee.evaluate import capability
 from nullmotion.guarantee.region import Region
 
 _FORMAT = "nullmotion certificate 1"
@@ -168,5 +167,5 @@ def _refutation(constraint: Constraint, counterexample: Any) -> dict[str, Any]:
     momentum = constraint.momentum_of(np.asarray(counterexample[0], float))
     return {
         "counterexample": tuple(float(v) for v in momentum),
-        "counterexample_capability": float(capability(constraint, momentum)),
+        "counterexample_capability": float(constraint.torque_capability(momentum)),
     }

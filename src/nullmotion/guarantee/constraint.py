@@ -86,6 +86,10 @@ class Constraint:
         """Return values that are <= 0 inside the envelope, where `squares` do not show it."""
         return []
 
+    def parts(self, h: Any) -> list[Any]:
+        """Return vectors (d,), of which none may vanish: the array is singular there; source."""
+        return []
+
     def margins(self, h: Any, torque_capability: Any) -> Any:
         """Return values that are all <= 0 just where TC is at least what is given; source."""
         rows = [torque_capability**2 * s - 1.0 for s in self.squares(h)]

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from nullmotion.errors import InputError
 from nullmotion.guarantee import radius as search
 from nullmotion.guarantee.certificate import Certificate, certify
 from nullmotion.guarantee.constraint import Constraint
@@ -49,6 +50,19 @@ def table(
     return rows
 
 
+def largest_radius(constraint: Constraint, torque_capability: float) -> search.Radius:
+    """Return the radius of the largest ball in which TC holds, by search.
+
+    Raises:
+        InputError: For a TC that there is not even without momentum.
+    """
+    home = float(constraint.torque_capability(np.zeros(constraint.m)))
+    if not 0 < torque_capability < home:
+        allowed = f"above 0 and below {home:.6g}, what there is without momentum"
+        raise InputError("torque_capability", torque_capability, allowed)
+    return search.guaranteed_radius(constraint, torque_capability)
+
+
 def prove_radius(
     constraint: Constraint, torque_capability: float, found: float,
     progress: Callable[[float], None] | None = None,
@@ -65,7 +79,15 @@ def prove_radius(
 def prove_capability(
     constraint: Constraint, radius: float, progress: Callable[[float], None] | None = None
 ) -> Certificate:
-    """Return a certificate for the greatest TC that search finds to hold inside a radius."""
+    """Return a certificate for the greatest TC that search finds to hold inside a radius.
+
+    Raises:
+        InputError: For a radius that is not inside the envelope.
+    """
+    envelope = search.guaranteed_radius(constraint, 0.0).value
+    if not 0 < radius < envelope:
+        allowed = f"above 0 and below {envelope:.6g}, the radius of the envelope"
+        raise InputError("radius", radius, allowed)
     sizes = np.linspace(0, radius, 33)[1:]
     least = min(search.least_capability(constraint, float(r)) for r in sizes)
     for share in _STEPS:

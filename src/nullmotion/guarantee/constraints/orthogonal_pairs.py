@@ -21,7 +21,9 @@ class OrthogonalPairs(Constraint):
         b_i = b (1 - (h_i/extent)^2)
 
     Two CMGs hold each part as in the box-90. With b = 1 every plane has r = sqrt 2 at no
-    momentum, where TC = 2, the greatest of any linear right inverse (n/m).
+    momentum, where TC = 2, the greatest of any linear right inverse (n/m). An extent of 2.6
+    then leaves the largest ball without singularity, 1.995: with less a plane is without
+    momentum at h = (-1, 1, 0) sqrt 2 or before, with more one is saturated at (1, -1, 0).
 
     Args:
         b: Bias at no momentum.
@@ -35,7 +37,7 @@ class OrthogonalPairs(Constraint):
     layout: ClassVar[str] = "orthogonal_pairs"
 
     b: float = 1.0
-    extent: float = 2.5
+    extent: float = 2.6
 
     def __post_init__(self) -> None:
         """Check the parameters."""
@@ -74,6 +76,10 @@ class OrthogonalPairs(Constraint):
             good = ops.logical_and(good, ops.less(0.0, square))
             good = ops.logical_and(good, ops.less(square, 4.0))
         return good
+
+    def parts(self, h: Any) -> list[Any]:
+        """Return the planes' momenta."""
+        return [np.array([plane.x, plane.other]) for plane in self.planes(h)]
 
     def edges(self, h: Any) -> list[Any]:
         """Return |h_i| - extent."""

@@ -7,8 +7,7 @@ from typing import Any, ClassVar
 
 from nullmotion.guarantee._bias import Term, checked_terms, even_terms
 from nullmotion.guarantee._two_planes import TwoPlanes
-
-_B = 4.735
+from nullmotion.guarantee.constraints.roof5 import Roof5
 
 
 @dataclass(frozen=True)
@@ -17,8 +16,16 @@ class Roof6(TwoPlanes):
 
         Psi = sum c X^i Y^j Z^k,    X = (h_x/3)^2,  Y = (h_y/3)^2,  Z = (h_z/3)^2
 
-    Each plane holds its part by three CMGs: one along it, two beside it. The coefficients
-    come from `nullmotion design constraint`.
+    Each plane holds its part by three CMGs: one along it, two beside it. The coefficients are
+    found by a sequence of linear programs (`nullmotion design constraint --layout roof6`) for
+    the radii of TC >= 0.5, 1 and 1.5 with an envelope of at least 2.9:
+
+        radius of                      envelope   TC >= 0.5   TC >= 1   TC >= 1.5
+        designed                          2.910       2.472     1.847       1.126
+        product of parabolas (Eq 51)      2.151       2.142     1.854       0.845
+
+    No plane is without momentum below |h| = 2.977. TC is 1.801 at no momentum; the greatest
+    of any linear right inverse is 2.
 
     Args:
         terms: Rows (i, j, k, c).
@@ -29,22 +36,35 @@ class Roof6(TwoPlanes):
     aliases: ClassVar[tuple[str, ...]] = ("roof6-designed",)
     citation: ClassVar[str] = "nullmotion design constraint"
     layout: ClassVar[str] = "roof6"
-    counts: ClassVar[tuple[int, int]] = (3, 3)
 
     terms: tuple[Term, ...] = (
-        (0, 0, 0, _B),
-        (1, 0, 0, 3.0 - _B),
-        (0, 1, 0, -_B),
-        (0, 0, 1, -_B),
-        (1, 1, 0, _B),
-        (1, 0, 1, _B),
-        (0, 1, 1, _B),
+        (0, 0, 0, 4.3259846),
+        (1, 0, 0, 2.0351112),
+        (0, 1, 0, -3.8568305),
+        (0, 0, 1, -3.8568305),
+        (2, 0, 0, -10.258937),
+        (1, 1, 0, 0.66015455),
+        (1, 0, 1, 0.66015455),
+        (0, 2, 0, 0.06543049),
+        (0, 0, 2, 0.06543049),
+        (0, 1, 1, 3.41899),
+        (3, 0, 0, 10.624553),
+        (4, 0, 0, -3.7297476),
     )
 
     def __post_init__(self) -> None:
         """Check the coefficients."""
         checked_terms(self, "terms")
 
+    @property
+    def counts(self) -> tuple[int, int]:
+        """CMGs in each plane."""
+        return 3, 3
+
     def bias(self, h: Any) -> tuple[Any, Any]:
         """Return Psi and its gradient."""
         return even_terms(self.terms, 3.0, h)
+
+    def without(self, failed: int) -> Roof5:
+        """Return the constraint for the five CMGs left."""
+        return Roof5(failed)

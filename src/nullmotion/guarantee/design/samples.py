@@ -1,0 +1,131 @@
+"""Momenta at which a bias is looked at, along rays: what it reaches there."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from nullmotion.guarantee.design.family import Family
+from nullmotion.guarantee.design.goal import Goal, Reward
+from nullmotion.guarantee.design.rows import rows_of
+from nullmotion.guarantee.maps import spread_directions
+
+_DIRECTIONS = 960  # over the sphere
+_ARC = 60  # along each edge of the octant
+_SHELLS = 64
+_ALIVE = 0.03  # TC that shows a momentum not singular
+_INNER = 0.045  # of the extent: nothing is asked of TC so close to no momentum
+_BROAD = 1.6  # shells over the extent, where volumes count
+
+
+class Measured(NamedTuple):
+    """What coefficients reach: q = TC^2 (s, d), radii (m,), volumes (v,), misses, score."""
+
+    q: np.ndarray
+    radii: np.ndarray
+    volumes: np.ndarray
+    missed: float
+    score: float
+
+
+class Samples:
+    """Rays h = |h| u through a part of momentum space that tells all.
+
+    Attributes:
+        directions: u, (d, 3); `add` takes more.
+        shells: |h|, (s,).
+        angles: Solid angle that each direction stands for; 0 for those at an edge.
+        floor: Least TC wanted on each shell.
+        coefficients: Number n of coefficients.
+    """
+
+    def __init__(self, family: Family, degree: int, goal: Goal, radius: float) -> None:
+        """Lay out rays for a goal with an envelope of a radius."""
+        self.family, self.degree, self.goal = family, degree, goal
+        self.coefficients = len(family.orbits(degree))
+        reach = family.extent * (_BROAD if goal.volumes else 1.0)
+        shells = reach * (np.arange(_SHELLS) + 1) / _SHELLS
+        self.shells = np.unique(np.concatenate([shells, [radius], goal.shells]))
+        self.floor = np.where(self.shells <= radius, _ALIVE, 0.0)
+        if goal.floor is not None:
+            self.floor = np.maximum(self.floor, goal.floor(self.shells))
+        self.floor[self.shells < _INNER * family.extent] = 0.0
+        self.directions, self.angles = part(family)
+        self.rows = rows_of(family.counts, family.extent)
+        self._lay()
+
+    def _lay(self) -> None:
+        self.points = (self.shells[:, None, None] * self.directions).reshape(-1, 3)
+        self.powers = self.family.powers(self.degree, self.points)
+
+    def add(self, momenta: np.ndarray) -> None:
+        """Add rays through momenta (k, 3), turned into the part that tells all."""
+        h = np.abs(momenta)
+        if self.family.equal:
+            h = np.concatenate([h, h[:, [0, 2, 1]]])
+        else:
+            h[:, 0] = momenta[:, 0]
+        h = h[np.linalg.norm(h, axis=1) > 0]
+        unit = h / np.linalg.norm(h, axis=1, keepdims=True)
+        self.directions = np.concatenate([self.directions, unit])
+        self.angles = np.concatenate([self.angles, np.zeros(len(unit))])
+        self._lay()
+
+    def measure(self, c: np.ndarray, penalty: float) -> Measured:
+        """Return what coefficients reach."""
+        goal = self.goal
+        q = self.rows.squares(self.points, self.powers @ c).reshape(len(self.shells), -1)
+        radii = np.array([self.radius(q, t) for t, _ in goal.radii])
+        volumes = np.array([self.volume(q, t) for t, _ in goal.volumes])
+        missed = float(np.max(self.floor - np.sqrt(q.min(axis=1)), initial=0.0))
+        score = _worth(goal.radii, radii) + _worth(goal.volumes, volumes) - penalty * missed
+        return Measured(q, radii, volumes, missed, score)
+
+    def radius(self, q: np.ndarray, level: float) -> float:
+        """Return the least |h| at which TC falls below a level."""
+        below, at, _ = self.crossings(q, level)
+        first = (q < level**2).argmax(axis=0)
+        if (first[(q < level**2).any(axis=0)] == 0).any():
+            return 0.0
+        return float(np.min(at[below], initial=self.shells[-1]))
+
+    def volume(self, q: np.ndarray, level: float) -> float:
+        """Return the volume with TC at least a level: sum of |h|^3 over crossings, by sign."""
+        below, at, ray = self.crossings(q, level)
+        share = self.angles[ray] * at**3 / 3.0
+        return float(np.sum(np.where(below, share, -share)))
+
+    def crossings(self, q: np.ndarray, level: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return where rays cross a level: whether TC falls there, |h|, and which ray."""
+        g = q - level**2
+        low, high = g[:-1], g[1:]
+        i, ray = np.nonzero((low < 0) != (high < 0))
+        share = low[i, ray] / (low[i, ray] - high[i, ray])
+        return low[i, ray] >= 0, self.shells[i] + share * np.diff(self.shells)[i], ray
+
+    def slopes(self, h: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return q of each row (N, k) and its slope over the coefficients (N, k, n)."""
+        powers = self.family.powers(self.degree, h)
+        q, slope = self.rows.slopes(h, powers @ c)
+        return q, slope @ powers
+
+
+def part(family: Family) -> tuple[np.ndarray, np.ndarray]:
+    """Return directions over the part that tells all, (d, 3), and the angle each stands for.
+
+    Those along the edges of an octant stand for none.
+    """
+    spiral = spread_directions(3, _DIRECTIONS)
+    spiral = spiral[(spiral[:, 0 if family.equal else 1 :] >= 0).all(axis=1)]
+    angle = np.linspace(0, np.pi / 2, _ARC)
+    arc = np.stack([np.cos(angle), np.sin(angle), np.zeros(_ARC)], axis=1)
+    edges = np.concatenate([np.roll(arc, k, axis=1) for k in range(3)])
+    if not family.equal:
+        edges = np.concatenate([edges, edges * [-1.0, 1.0, 1.0]])
+    angles = np.repeat([4 * np.pi / len(spiral), 0.0], [len(spiral), len(edges)])
+    return np.concatenate([spiral, edges]), angles
+
+
+def _worth(rewards: tuple[Reward, ...], values: np.ndarray) -> float:
+    return float(sum(r.weight * v for r, v in zip(rewards, values, strict=True)))
