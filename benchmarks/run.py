@@ -21,6 +21,7 @@ import accuracy
 import guarantees
 import latency
 import lookahead
+import lookahead_triangle
 import plan_search
 import throughput
 from common import HEAD, Row
@@ -52,7 +53,7 @@ def measure(quick: bool) -> tuple[list[Row], str]:
         "Waiting times": latency.rows(quick),
         "Plans, one core": plan_search.rows(quick),
         "Torque capability and certificates": guarantees.rows(quick),
-        "Looking ahead, one core": lookahead.rows(quick),
+        "Looking ahead, one core": [*lookahead.rows(quick), *lookahead_triangle.rows(quick)],
         "Accuracy": accuracy.rows(quick),
     }
     everything = []
