@@ -9,7 +9,6 @@ import numpy as np
 
 from nullmotion.scenario import toml
 from nullmotion.sizing.cases import NONE_FAILED, Cases
-from nullmotion.sizing.one_flight import WATCHED
 from nullmotion.sizing.requirement import Requirement
 from nullmotion.sizing.trial import Trial
 
@@ -49,7 +48,7 @@ def scenario_files(trial: Trial, h0: float, rate: float, slew: Cases) -> dict[st
     }
     if r.disturbance.torque_Nm is not None:
         data["disturbance"] = {"constant_Nm": list(r.disturbance.torque_Nm)}
-    steps = int(np.ceil((1.0 + WATCHED) * r.time / r.period))
+    steps = int(np.ceil(r.time / r.period * (1.0 - 1e-9)))
     data["mission"] = {
         "kind": "attitude",
         "profile": f"{name}.csv",

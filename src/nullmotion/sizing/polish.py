@@ -138,7 +138,7 @@ def _reduced(found: Polished) -> Design | None:
     slews = found.slews.joined(found.checked)
     factors = np.array(list(REDUCTIONS.values()))
     late = trial.settled(slews, h0 * factors[:, 0], rate * factors[:, 1])
-    bad = late >= trial.requirement.time
+    bad = late > trial.requirement.time  # by a sample at least: not settled at that time
     flies = [not row.any() for row in bad]
     found.smaller = dict(zip(REDUCTIONS, flies, strict=True))
     found.worst = slews.picked(np.array([int(np.argmax(bad.sum(axis=0)))]))

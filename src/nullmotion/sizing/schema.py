@@ -67,7 +67,7 @@ class SettlingSection(Section):
     """``[settling]``: what counts as settled, and the time for it beside the slew's."""
 
     pointing_error_deg: Positive = 0.1
-    body_rate_deg_s: Positive = 0.05
+    body_rate_deg_s: Positive = 0.2
     time_s: NotNegative = 0.0
 
 

@@ -120,13 +120,18 @@ class Family:
 
 
 BOX90 = Family(
-    "box90", "box90-designed", (2, 2), 2.0, float(4 * np.sqrt(6.0) / 3), 1.905, {0.5: 1.0, 1.0: 1.0},
+    layout="box90",
+    constraint="box90-designed",
+    counts=(2, 2),
+    extent=2.0,
+    b=float(4 * np.sqrt(6.0) / 3),
+    envelope=1.905,
+    levels={0.5: 1.0, 1.0: 1.0},
     published=("box90-cubic", "box90-spherical"),
-)  # fmt: skip
-ROOF6 = Family("roof6", "roof6", (3, 3), 3.0, 4.735, 2.9, {0.5: 1.0, 1.0: 1.0, 1.5: 1.0})
-ROOF5 = Family(
-    "roof5", "roof5", (3, 2), 2.0, 3.65, 1.9, {0.5: 1.0, 1.0: 1.0, 1.25: 0.5}, tilt=-0.76
 )
+ROOF6 = Family("roof6", "roof6", (3, 3), 3.0, 4.735, 2.9, {0.5: 1.0, 1.0: 1.0, 1.5: 1.0})
+_LEVELS5 = {0.5: 1.0, 1.0: 1.0, 1.25: 0.5}
+ROOF5 = Family("roof5", "roof5", (3, 2), 2.0, 3.65, 1.9, _LEVELS5, tilt=-0.76)
 _FAMILIES = {family.layout: family for family in (BOX90, ROOF6, ROOF5)}
 
 

@@ -80,14 +80,14 @@ def _floor(program: Program, samples: Samples, c: np.ndarray, now: Measured) -> 
 
 def _volume_slope(samples: Samples, c: np.ndarray, now: Measured, level: float) -> np.ndarray:
     """Return the slope of the volume with TC >= level over the coefficients, (n,)."""
-    below, at, ray = samples.crossings(now.q, level)
+    falls, at, ray = now.crossings[level]
     u = samples.directions[ray]
     q, slope = samples.slopes(at[:, None] * u, c)
     inner, _ = samples.slopes((1.0 - _ASIDE) * at[:, None] * u, c)
     row, k = np.arange(len(at)), np.where(np.isfinite(q), q, np.inf).argmin(axis=1)
     rate = (q - inner)[row, k] / (_ASIDE * at)
-    moves = np.isfinite(rate) & (np.abs(rate) > _STEEP) & (below == (rate < 0))
-    size = np.where(moves, samples.angles[ray] * at**2, 0.0) * np.where(below, 1.0, -1.0)
+    moves = np.isfinite(rate) & (np.abs(rate) > _STEEP) & (falls == (rate < 0))
+    size = np.where(moves, samples.angles[ray] * at**2, 0.0) * np.where(falls, 1.0, -1.0)
     pull = -slope[row, k] / np.where(moves, rate, 1.0)[:, None]
     pull = np.where(moves[:, None], np.clip(pull, -_FAR, _FAR), 0.0)
     found: np.ndarray = size @ pull

@@ -16,13 +16,32 @@ _ARC = 60  # along each edge of the octant
 _SHELLS = 64
 _ALIVE = 0.03  # TC that shows a momentum not singular
 _INNER = 0.045  # of the extent: nothing is asked of TC so close to no momentum
+_HALVINGS = 6
 _BROAD = 1.6  # shells over the extent, where volumes count
 
 
+class Crossings(NamedTuple):
+    """Where rays cross a level: whether TC falls there, |h|, and which ray."""
+
+    falls: np.ndarray
+    at: np.ndarray
+    ray: np.ndarray
+
+
 class Measured(NamedTuple):
-    """What coefficients reach: q = TC^2 (s, d), radii (m,), volumes (v,), misses, score."""
+    """What coefficients reach.
+
+    Attributes:
+        q: TC^2 on shells and rays, (s, d).
+        crossings: Of each level that is rewarded.
+        radii: Radius for each reward.
+        volumes: Volume for each reward.
+        missed: Most that TC is below the floor.
+        score: What it is worth.
+    """
 
     q: np.ndarray
+    crossings: dict[float, Crossings]
     radii: np.ndarray
     volumes: np.ndarray
     missed: float
@@ -76,33 +95,40 @@ class Samples:
         """Return what coefficients reach."""
         goal = self.goal
         q = self.rows.squares(self.points, self.powers @ c).reshape(len(self.shells), -1)
-        radii = np.array([self.radius(q, t) for t, _ in goal.radii])
-        volumes = np.array([self.volume(q, t) for t, _ in goal.volumes])
+        levels = {reward.torque_capability for reward in (*goal.radii, *goal.volumes)}
+        found = {level: self.crossings(c, q, level) for level in levels}
+        radii = np.array([self._radius(q, found[t], t) for t, _ in goal.radii])
+        volumes = np.array([self._volume(found[t]) for t, _ in goal.volumes])
         missed = float(np.max(self.floor - np.sqrt(q.min(axis=1)), initial=0.0))
         score = _worth(goal.radii, radii) + _worth(goal.volumes, volumes) - penalty * missed
-        return Measured(q, radii, volumes, missed, score)
+        return Measured(q, found, radii, volumes, missed, score)
 
-    def radius(self, q: np.ndarray, level: float) -> float:
+    def _radius(self, q: np.ndarray, found: Crossings, level: float) -> float:
         """Return the least |h| at which TC falls below a level."""
-        below, at, _ = self.crossings(q, level)
-        first = (q < level**2).argmax(axis=0)
-        if (first[(q < level**2).any(axis=0)] == 0).any():
+        if (q[0] < level**2).any():
             return 0.0
-        return float(np.min(at[below], initial=self.shells[-1]))
+        return float(np.min(found.at[found.falls], initial=self.shells[-1]))
 
-    def volume(self, q: np.ndarray, level: float) -> float:
+    def _volume(self, found: Crossings) -> float:
         """Return the volume with TC at least a level: sum of |h|^3 over crossings, by sign."""
-        below, at, ray = self.crossings(q, level)
-        share = self.angles[ray] * at**3 / 3.0
-        return float(np.sum(np.where(below, share, -share)))
+        share = self.angles[found.ray] * found.at**3 / 3.0
+        return float(np.sum(np.where(found.falls, share, -share)))
 
-    def crossings(self, q: np.ndarray, level: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return where rays cross a level: whether TC falls there, |h|, and which ray."""
-        g = q - level**2
-        low, high = g[:-1], g[1:]
-        i, ray = np.nonzero((low < 0) != (high < 0))
-        share = low[i, ray] / (low[i, ray] - high[i, ray])
-        return low[i, ray] >= 0, self.shells[i] + share * np.diff(self.shells)[i], ray
+    def crossings(self, c: np.ndarray, q: np.ndarray, level: float) -> Crossings:
+        """Return where rays cross a level, from q on shells: halvings, then a chord."""
+        over = q - level**2
+        i, ray = np.nonzero((over[:-1] >= 0) != (over[1:] >= 0))
+        falls, u = over[i, ray] >= 0, self.directions[ray]
+        ends, values = np.stack([self.shells[i], self.shells[i + 1]]), over[[i, i + 1], ray]
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (ends[0] + ends[1])
+            h = middle[:, None] * u
+            found = self.rows.squares(h, self.family.powers(self.degree, h) @ c) - level**2
+            first = (found >= 0) == falls  # the middle is on the first end's side
+            moved = np.stack([first, ~first])
+            ends, values = np.where(moved, middle, ends), np.where(moved, found, values)
+        share = values[0] / (values[0] - values[1])
+        return Crossings(falls, ends[0] + share * (ends[1] - ends[0]), ray)
 
     def slopes(self, h: np.ndarray, c: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return q of each row (N, k) and its slope over the coefficients (N, k, n)."""
