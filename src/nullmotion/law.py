@@ -17,7 +17,6 @@ class Claim(StrEnum):
     """A promise that the contract tests hold a law to, as created by default, on every layout."""
 
     EXACT_TORQUE = "A delta_dot = hdot at regular states"
-    SAMPLE_TORQUE = "over a sample the momentum changes by period x hdot, if rates allow"
     FINITE = "finite rates at every state, singular ones included"
     BOUNDED = "rates stay below a fixed multiple of |hdot| at every state"
     ROTATION = "same rates when body axes and command are turned together"

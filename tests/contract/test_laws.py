@@ -268,21 +268,6 @@ def test_exact_torque(law: str, layout: str) -> None:
     close(torque, hdot)
 
 
-@steered(Claim.SAMPLE_TORQUE)
-@pytest.mark.sampled(4)
-def test_sample_torque(law: str, layout: str) -> None:
-    """Commands that the pseudo-inverse meets with a third of the rates there are."""
-    steering, array = laws.create(law), array_of(layout)
-    delta, hdot = regular_states(array, 0.2)
-    least = np.einsum("knm,km->kn", np.linalg.pinv(array.jacobian(delta)), hdot)
-    within = np.abs(least).max(axis=1) < RATE_LIMIT / 3
-    delta, hdot = few(steering, (delta[within], hdot[within]))
-    assert len(delta) > 5
-    rates, _ = many(steering, array, delta, hdot)
-    given = (array.momentum(delta + 0.01 * rates) - array.momentum(delta)) / 0.01
-    close(given, hdot, 1e-6)
-
-
 @steered(Claim.FINITE)
 @pytest.mark.sampled(9)
 def test_finite(law: str, layout: str) -> None:

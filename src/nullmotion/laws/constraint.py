@@ -57,11 +57,7 @@ class AugmentedJacobian(Law):
     full_name: ClassVar[str] = "Constraint, augmented Jacobian"
     aliases: ClassVar[tuple[str, ...]] = ("augmented-jacobian",)
     citation: ClassVar[str] = "Elliott, dissertation (2019), Eqs 12, 49"
-    claims: ClassVar[frozenset[Claim]] = frozenset(Claim) - {
-        Claim.BOUNDED,
-        Claim.HOMOGENEOUS,
-        Claim.SAMPLE_TORQUE,
-    }
+    claims: ClassVar[frozenset[Claim]] = frozenset(Claim) - {Claim.BOUNDED, Claim.HOMOGENEOUS}
     knows_axes: ClassVar[bool] = True
 
     constraint: str | None = None

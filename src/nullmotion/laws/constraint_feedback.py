@@ -64,11 +64,7 @@ class ConstraintFeedback(Law):
     full_name: ClassVar[str] = "Constraint, feedback in the null space"
     aliases: ClassVar[tuple[str, ...]] = ("null-space-feedback",)
     citation: ClassVar[str] = "Elliott, dissertation (2019), Eq 13; Jones et al. (2012)"
-    claims: ClassVar[frozenset[Claim]] = frozenset(Claim) - {
-        Claim.BOUNDED,
-        Claim.HOMOGENEOUS,
-        Claim.SAMPLE_TORQUE,
-    }
+    claims: ClassVar[frozenset[Claim]] = frozenset(Claim) - {Claim.BOUNDED, Claim.HOMOGENEOUS}
     knows_axes: ClassVar[bool] = True
 
     constraint: str | None = None

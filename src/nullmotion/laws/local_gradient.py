@@ -33,7 +33,7 @@ class LocalGradient(Law):
     full_name: ClassVar[str] = "Local gradient"
     aliases: ClassVar[tuple[str, ...]] = ("lg", "gradient")
     citation: ClassVar[str] = "Elliott, dissertation (2019), Eqs 59, 143"
-    claims: ClassVar[frozenset[Claim]] = frozenset(Claim) - {Claim.SAMPLE_TORQUE}
+    claims: ClassVar[frozenset[Claim]] = frozenset(Claim)
 
     k: float | None = None
 

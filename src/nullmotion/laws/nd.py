@@ -42,9 +42,7 @@ class NonDirectionalNullMotion(Law):
     citation: ClassVar[str] = (
         "Bedrossian et al., J. Guid. Control Dyn. 13 (1990); Mao et al., IEEE Access 7 (2019), Eq 7"
     )
-    claims: ClassVar[frozenset[Claim]] = frozenset(Claim) - {
-        Claim.SAMPLE_TORQUE, Claim.BOUNDED, Claim.HOMOGENEOUS,
-    }  # fmt: skip
+    claims: ClassVar[frozenset[Claim]] = frozenset(Claim) - {Claim.BOUNDED, Claim.HOMOGENEOUS}
 
     gain: float | None = None
     as_published: bool = False

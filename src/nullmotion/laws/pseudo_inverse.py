@@ -30,7 +30,7 @@ class PseudoInverse(Law):
     full_name: ClassVar[str] = "Moore-Penrose pseudo-inverse"
     aliases: ClassVar[tuple[str, ...]] = ("pi", "mp")
     citation: ClassVar[str] = "Mao et al., IEEE Access 7 (2019), Eqs 5, 40"
-    claims: ClassVar[frozenset[Claim]] = frozenset(Claim) - {Claim.SAMPLE_TORQUE}
+    claims: ClassVar[frozenset[Claim]] = frozenset(Claim)
 
     sigma_floor: float = 1e-4
 

@@ -76,9 +76,7 @@ class RecedingHorizon(Law):
     full_name: ClassVar[str] = "Receding-horizon null motion"
     aliases: ClassVar[tuple[str, ...]] = ("rhc", "look-ahead")
     citation: ClassVar[str] = "Pereira et al. (2022), Sec. 5.3, carried over to any array"
-    claims: ClassVar[frozenset[Claim]] = frozenset(
-        {Claim.SAMPLE_TORQUE, Claim.FINITE, Claim.BOUNDED, Claim.TIMELESS}
-    )
+    claims: ClassVar[frozenset[Claim]] = frozenset({Claim.FINITE, Claim.BOUNDED, Claim.TIMELESS})
     information: ClassVar[tuple[str, ...]] = ("preview",)
     traceable: ClassVar[bool] = False
 

@@ -34,10 +34,7 @@ class SingularDirectionAvoidance(Law):
     full_name: ClassVar[str] = "Singular direction avoidance"
     aliases: ClassVar[tuple[str, ...]] = ("singular-direction-avoidance",)
     citation: ClassVar[str] = "Ford & Hall, J. Guid. Control Dyn. 23 (2000), 648-656"
-    claims: ClassVar[frozenset[Claim]] = frozenset(Claim) - {
-        Claim.EXACT_TORQUE,
-        Claim.SAMPLE_TORQUE,
-    }
+    claims: ClassVar[frozenset[Claim]] = frozenset(Claim) - {Claim.EXACT_TORQUE}
 
     alpha0: float = 0.01
     kappa: float = 10.0

@@ -47,7 +47,7 @@ class SingularityRobust(Law):
         "Nakamura & Hanafusa, J. Dyn. Sys. Meas. Control 108 (1986); "
         "Papakonstantinou et al. (2021), Eqs 19-21"
     )
-    claims: ClassVar[frozenset[Claim]] = frozenset(Claim) - {Claim.SAMPLE_TORQUE}
+    claims: ClassVar[frozenset[Claim]] = frozenset(Claim)
 
     lambda0: float = 0.01
     mu: float | None = None

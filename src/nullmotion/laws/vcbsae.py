@@ -66,7 +66,7 @@ class VectorControl(Law):
     full_name: ClassVar[str] = "Vector-control based singularity avoidance and escape"
     aliases: ClassVar[tuple[str, ...]] = ("vector-control",)
     citation: ClassVar[str] = "Mao et al., IEEE Access 7 (2019), Eqs 28-39"
-    claims: ClassVar[frozenset[Claim]] = frozenset(Claim) - {Claim.SAMPLE_TORQUE}
+    claims: ClassVar[frozenset[Claim]] = frozenset(Claim)
 
     xi: float = 10.0
     d: float = 0.1
