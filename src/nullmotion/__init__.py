@@ -36,6 +36,7 @@ _MODULES = {
     "plan": "nullmotion.plan",
     "singular_lines": "nullmotion.singular_lines",
     "singularity": "nullmotion.singularity",
+    "sizing": "nullmotion.sizing",
 }
 
 __all__ = ["__version__", *_WHERE, *_MODULES]

@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 
 from nullmotion import ops
-from nullmotion.array import layouts
 from nullmotion.array.model import CmgArray
 from nullmotion.errors import TraceError
 from nullmotion.guarantee._axes import CLOSE, places, rotations
@@ -64,19 +63,13 @@ def fit(constraint: Constraint, array: CmgArray) -> Fit | str:
     axes = (array.gimbal_axes, array.spin_axes, array.torque_axes)
     if ops.is_symbolic(*axes):
         raise TraceError("a constraint must know the gimbal axes: run by run where they differ")
-    own = tuple(sorted(constraint.layout_parameters.items()))
     key = tuple((a.shape, a.tobytes()) for a in map(np.ascontiguousarray, axes))
-    return _fit(constraint.name, constraint.layout, own, key)
+    return _fit(constraint, key)
 
 
 @lru_cache(maxsize=256)
-def _fit(
-    name: str,
-    layout: str,
-    parameters: tuple[tuple[str, Any], ...],
-    axes: tuple[tuple[tuple[int, ...], bytes], ...],
-) -> Fit | str:
-    model = layouts.create(layout, **dict(parameters))
+def _fit(constraint: Constraint, axes: tuple[tuple[tuple[int, ...], bytes], ...]) -> Fit | str:
+    model, name = constraint.array(), constraint.name
     gimbal, spin, torque = (np.frombuffer(raw).reshape(shape) for shape, raw in axes)
     if len(gimbal) != model.n:
         return f"{name} holds {model.n} CMGs, not {len(gimbal)}"
@@ -91,7 +84,9 @@ def _fit(
             if best is None or likeness > best[0] + CLOSE:
                 best = likeness, R, at
     if best is None:
-        return f"its gimbal axes are not those of {layout} ({name}), however it is turned"
+        return (
+            f"its gimbal axes are not those of {constraint.layout} ({name}), however it is turned"
+        )
     likeness, R, at = best
     turned = gimbal @ R.T, spin @ R.T, torque @ R.T
     return _made(*turned, np.argsort(at), model, float(likeness))

@@ -18,15 +18,21 @@ _AROUND = np.radians(4.0)  # how far from an axis others are tried
 def searched(requirement: Requirement, geometry: Geometry, share: int = 1) -> Cases:
     """Return slews about evenly spread axes, and those where the array is weak.
 
+    About each of the latter one failure or momentum is flown, in turn, where there are several.
+
     Args:
         requirement: What has to be flown.
         geometry: The array.
         share: Divides the number of axes.
     """
     r, n = requirement, geometry.whole.n
-    count = max(_LEAST, r.sampling.axes // (share * multiplicity(r, n)))
+    ways = multiplicity(r, n)
+    even = cases(r, n, spread(max(_LEAST, r.sampling.axes // (share * ways)), r.axis, r.cone))
     special = inside(weak(geometry.whole, r.inertia), r.axis, r.cone)
-    return cases(r, n, np.concatenate([spread(count, r.axis, r.cone), special]))
+    if not len(special):
+        return even
+    rows = np.arange(len(special))
+    return even.joined(cases(r, n, special).picked(rows * ways + rows % ways))
 
 
 def lattice(requirement: Requirement, n: int, turn: float, share: int = 1) -> Cases:

@@ -97,6 +97,8 @@ class Trial:
             rate: Largest gimbal rate [rad/s], (designs,).
             fine: Integration steps in a period of the law.
         """
+        if not len(cases):
+            return np.empty((len(h0), 0))
         size = max(1, _MOST // len(cases))
         parts = [
             self._settled(cases, h0[i : i + size], rate[i : i + size], fine)

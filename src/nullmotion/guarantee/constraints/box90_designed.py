@@ -19,11 +19,11 @@ class Box90Designed(TwoPlanes):
     capability than both published biases at every |h| (`nullmotion design constraint`):
 
         radius of    envelope   TC >= 0.5   TC >= 1    least TC at |h| = 0.4    1    1.6
-        designed        1.929       1.476     0.821                    1.221 0.878 0.388
-        cubic           1.790       1.391     0.744                    1.161 0.810 0.309
-        spherical       1.835       1.416     0.805                    1.186 0.873 0.318
+        designed        1.927       1.476     0.821                    1.222 0.877 0.387
+        cubic           1.790       1.391     0.743                    1.161 0.810 0.308
+        spherical       1.834       1.415     0.804                    1.185 0.872 0.317
 
-    No plane is without momentum below |h| = 1.978. TC is 1.324 at no momentum.
+    No plane is without momentum below |h| = 1.972. TC is 1.325 at no momentum.
 
     Args:
         terms: Rows (i, j, k, c).
@@ -35,18 +35,18 @@ class Box90Designed(TwoPlanes):
     layout: ClassVar[str] = "box90"
 
     terms: tuple[Term, ...] = (
-        (0, 0, 0, 3.1178227),
-        (1, 0, 0, 0.16806419),
-        (0, 1, 0, -1.7803384),
-        (0, 0, 1, -1.7803384),
-        (2, 0, 0, -5.0039469),
-        (1, 1, 0, -0.43403876),
-        (1, 0, 1, -0.43403876),
-        (0, 2, 0, -0.84688723),
-        (0, 0, 2, -0.84688723),
-        (0, 1, 1, 2.4240409),
-        (3, 0, 0, 6.3754625),
-        (4, 0, 0, -2.7128197),
+        (0, 0, 0, 3.136356),
+        (1, 0, 0, 0.11374151),
+        (0, 1, 0, -1.7424439),
+        (0, 0, 1, -1.7424439),
+        (2, 0, 0, -5.0530882),
+        (1, 1, 0, -0.513923),
+        (1, 0, 1, -0.513923),
+        (0, 2, 0, -0.88944652),
+        (0, 0, 2, -0.88944652),
+        (0, 1, 1, 2.7624474),
+        (3, 0, 0, 6.6423789),
+        (4, 0, 0, -2.9117049),
     )
 
     def __post_init__(self) -> None:

@@ -21,10 +21,10 @@ class Roof6(TwoPlanes):
     the radii of TC >= 0.5, 1 and 1.5 with an envelope of at least 2.9:
 
         radius of                      envelope   TC >= 0.5   TC >= 1   TC >= 1.5
-        designed                          2.910       2.472     1.847       1.126
-        product of parabolas (Eq 51)      2.151       2.142     1.854       0.845
+        designed                          2.913       2.471     1.847       1.124
+        product of parabolas (Eq 51)      2.151       2.141     1.854       0.844
 
-    No plane is without momentum below |h| = 2.977. TC is 1.801 at no momentum; the greatest
+    No plane is without momentum below |h| = 2.991. TC is 1.801 at no momentum; the greatest
     of any linear right inverse is 2.
 
     Args:
@@ -38,18 +38,18 @@ class Roof6(TwoPlanes):
     layout: ClassVar[str] = "roof6"
 
     terms: tuple[Term, ...] = (
-        (0, 0, 0, 4.3259846),
-        (1, 0, 0, 2.0351112),
-        (0, 1, 0, -3.8568305),
-        (0, 0, 1, -3.8568305),
-        (2, 0, 0, -10.258937),
-        (1, 1, 0, 0.66015455),
-        (1, 0, 1, 0.66015455),
-        (0, 2, 0, 0.06543049),
-        (0, 0, 2, 0.06543049),
-        (0, 1, 1, 3.41899),
-        (3, 0, 0, 10.624553),
-        (4, 0, 0, -3.7297476),
+        (0, 0, 0, 4.3238703),
+        (1, 0, 0, 2.0508481),
+        (0, 1, 0, -3.82688),
+        (0, 0, 1, -3.82688),
+        (2, 0, 0, -10.345853),
+        (1, 1, 0, 0.85866536),
+        (1, 0, 1, 0.85866536),
+        (0, 2, 0, -0.10366975),
+        (0, 0, 2, -0.10366975),
+        (0, 1, 1, 4.322106),
+        (3, 0, 0, 10.763811),
+        (4, 0, 0, -3.7957496),
     )
 
     def __post_init__(self) -> None:

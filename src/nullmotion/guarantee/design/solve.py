@@ -13,7 +13,7 @@ from nullmotion.guarantee.design.climb import PENALTY, Climb
 from nullmotion.guarantee.design.envelope import bias_bounds, greatest_envelope, nearest_bias
 from nullmotion.guarantee.design.family import Family
 from nullmotion.guarantee.design.goal import Goal
-from nullmotion.guarantee.design.samples import part
+from nullmotion.guarantee.design.rays import part
 
 _SPREAD = 0.4  # standard deviation of a start's coefficients
 _REFINEMENTS = 2
