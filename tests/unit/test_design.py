@@ -24,9 +24,9 @@ from nullmotion.guarantee.singular import nearest_singular
 
 LAYOUTS = ("box90", "roof6", "roof5")
 SHIPPED = {
-    "box90-designed": {0.0: 1.929, 0.5: 1.476, 1.0: 0.821},
-    "roof6": {0.0: 2.909, 0.5: 2.472, 1.0: 1.847, 1.5: 1.125},
-    "roof5": {0.0: 1.921, 0.5: 1.474, 1.0: 0.862, 1.25: 0.500},
+    "box90-designed": {0.0: 1.9277, 0.5: 1.476, 1.0: 0.821},
+    "roof6": {0.0: 2.9132, 0.5: 2.4715, 1.0: 1.8475, 1.5: 1.1242},
+    "roof5": {0.0: 1.9412, 0.5: 1.474, 1.0: 0.862, 1.25: 0.500},
 }
 
 
@@ -133,7 +133,7 @@ def test_samples_measure_what_search_finds(rng):
     now, made = samples.measure(c, PENALTY), family.make(2, c)
     assert now.radii[0] == pytest.approx(guaranteed_radius(made, 0.5).value, abs=5e-3)
     assert now.volumes[0] == pytest.approx(volume(made, 0.5, points=2**16).value, rel=0.03)
-    step = 1e-3 * rng.normal(size=c.shape)
+    step = 1e-4 * rng.normal(size=c.shape)
     high, low = (samples.measure(c + s * step, PENALTY).volumes[0] for s in (1, -1))
     assert (high - low) == pytest.approx(2 * _volume_slope(samples, c, now, 0.5) @ step, rel=0.1)
 

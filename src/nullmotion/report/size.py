@@ -99,7 +99,7 @@ def _certified(row: Any) -> tuple[str, ...]:
         row.layout,
         str(row.cmgs),
         proof.basis if proof.proven else "not proven",
-        "constraint",
+        proof.law,
         *map(number, numbers),
         f"TC {number(proof.torque_capability, 3)} to {number(proof.radius, 3)} h0",
         f"{'yes' if proof.flown else 'no'}, {proof.flights:,} slews",

@@ -77,7 +77,7 @@ def biases(requirement: Requirement, axes: np.ndarray) -> np.ndarray:
 
 
 def _failures(requirement: Requirement, n: int) -> list[int]:
-    return list(range(n)) if requirement.failure.failed_cmgs else [NONE_FAILED]
+    return [NONE_FAILED, *range(n)] if requirement.failures else [NONE_FAILED]
 
 
 def _spread(held: np.ndarray, count: int) -> np.ndarray:

@@ -58,7 +58,7 @@ def chosen(requirement: Requirement, layout: str, fleet: Fleet, step: Step) -> C
     geometry = Geometry(layout, _usual(requirement, layout), bool(requirement.failures))
     curves = [_curve(Trial(fleet, geometry, *pairs[0]), _TOLERANCE)]
     turning = geometry.skew is not None and requirement.skews[0] < requirement.skews[1]
-    if geometry.held is not None:
+    if geometry.held:
         turned = Trial(fleet, geometry.at(start="constraint"), *pairs[0])
         curves.append(_curve(turned, _TOLERANCE))
     if turning:

@@ -26,7 +26,8 @@ class Geometry:
             of the array's ``constraint`` function.
 
     Attributes:
-        held: The array's constraint function; None without one, and with failures.
+        held: Constraint functions, of the whole array and after each failure; empty unless
+            all of them have one.
         arrays: What is left after the failure of each CMG; the whole array at -1.
         reason: Why it cannot fly after a failure; empty if it may.
     """
@@ -38,8 +39,6 @@ class Geometry:
         own = {} if skew is None else {"skew": skew}
         self.layout, self.skew, self.start = layout, skew, start
         self.whole: CmgArray = layouts.create(layout, **own)
-        found = "" if failures else held(self.whole)
-        self.held: Held | None = found if isinstance(found, Held) else None
         self.arrays = {NONE_FAILED: self.whole}
         self.reason = ""
         self._homes = {NONE_FAILED: layouts.home(layout, **own)}
@@ -49,24 +48,30 @@ class Geometry:
             if home is None and not self.reason:
                 self.reason = f"without CMG {i + 1} it is singular wherever it has no momentum"
             self._homes[i] = np.zeros(self.arrays[i].n) if home is None else home
+        known = {i: held(array) for i, array in self.arrays.items()}
+        self.held = {i: h for i, h in known.items() if isinstance(h, Held)}
+        if len(self.held) < len(known):
+            self.held = {}
 
     def starts(self, cases: Cases, h0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return start angles [rad], (k, n), and where the array can hold the bias, (k,).
 
         Args:
-            cases: The slews, all of them after a failure or none.
+            cases: The slews, all with as many CMGs.
             h0: Momentum of the CMGs of each [N m s], (k,).
         """
         momentum = cases.bias / h0[:, None]
-        if self.start == "constraint" and self.held is not None:
-            return self.held.starts(momentum)
         n = self.arrays[int(cases.failed[0])].n
         delta, good = np.empty((len(cases), n)), np.empty(len(cases), bool)
         for i in np.unique(cases.failed).tolist():
             rows = cases.failed == i
-            found = starts.holding(self.arrays[i], self._homes[i], momentum[rows])
-            delta[rows], good[rows] = found
+            delta[rows], good[rows] = self._holding(i, momentum[rows])
         return delta, good
+
+    def _holding(self, i: int, momentum: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        if self.start == "constraint" and self.held:
+            return self.held[i].starts(momentum)
+        return starts.holding(self.arrays[i], self._homes[i], momentum)
 
     def at(self, skew: float | None = None, start: Start | None = None) -> Geometry:
         """Return the layout at another angle or with another start."""

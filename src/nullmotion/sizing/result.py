@@ -27,8 +27,9 @@ class Certified:
         constraint: Constraint function.
         certificates: What was proven, ball in ball: radius, torque capability, boxes, seconds.
         proven: Whether all of it was.
-        flown: Whether it flew the slews of the check under the constraint law.
+        flown: Whether it flew the slews of a check.
         flights: Number of these flights.
+        law: Law that flew them: the one that keeps to the constraint, where it knows the array.
         skew_deg: Roof angle; None for a layout without.
         basis: ``certified``.
     """
@@ -43,6 +44,7 @@ class Certified:
     proven: bool
     flown: bool = False
     flights: int = 0
+    law: str = ""
     skew_deg: float | None = None
     basis: Basis = "certified"
 

@@ -9,7 +9,7 @@ import numpy as np
 from nullmotion import laws
 from nullmotion.law import Law
 from nullmotion.sizing.axes import frames
-from nullmotion.sizing.cases import Cases
+from nullmotion.sizing.cases import NONE_FAILED, Cases
 from nullmotion.sizing.flight import Flights
 from nullmotion.sizing.geometry import Geometry
 from nullmotion.sizing.held import InLayout
@@ -35,7 +35,7 @@ class Fleet:
     def flights(self, geometry: Geometry, law: Law, failed: int, substeps: int) -> Flights:
         """Return the flights of a law with what is left of an array after a failure."""
         array = geometry.arrays[failed]
-        own = (geometry.layout, geometry.skew) if law.knows_axes else ()
+        own = (geometry.layout, geometry.skew, failed) if law.knows_axes else ()
         key = (repr(law), array.n, substeps, *own)
         if key not in self._made:
             flown = InLayout(law, array) if law.knows_axes else law
@@ -68,7 +68,7 @@ class Trial:
     def __post_init__(self) -> None:
         """Make the law; one that keeps to a constraint starts on it."""
         object.__setattr__(self, "_law", laws.create(self.law))
-        if self._law.knows_axes and self.geometry.held is not None:
+        if self._law.knows_axes and self.geometry.held:
             object.__setattr__(self, "geometry", self.geometry.at(start="constraint"))
 
     @property
@@ -107,14 +107,23 @@ class Trial:
         return np.concatenate(parts)
 
     def _settled(self, cases: Cases, h0: np.ndarray, rate: np.ndarray, fine: int) -> np.ndarray:
-        count, each = len(h0), len(cases)
-        many = cases.picked(np.tile(np.arange(each), count))
-        size, limit = (np.repeat(v, each) for v in self.requirement.held_back(h0, rate))
-        delta, able = self.geometry.starts(many, size)
-        flights = self.fleet.flights(self.geometry, self._law, int(cases.failed[0]), fine)
-        columns = (*self.geometry.axes(many), size, limit, delta)
-        late = flights.fly(self.profile, frames(many.axis), columns)
-        return np.where(able, late, np.inf).reshape(count, each)
+        late = np.empty((len(h0), len(cases)))
+        for rows in self._together(cases):
+            part = cases.picked(rows)
+            many = part.picked(np.tile(np.arange(len(rows)), len(h0)))
+            size, limit = (np.repeat(v, len(rows)) for v in self.requirement.held_back(h0, rate))
+            delta, able = self.geometry.starts(many, size)
+            flights = self.fleet.flights(self.geometry, self._law, int(part.failed[0]), fine)
+            columns = (*self.geometry.axes(many), size, limit, delta)
+            found = flights.fly(self.profile, frames(many.axis), columns)
+            late[:, rows] = np.where(able, found, np.inf).reshape(len(h0), -1)
+        return late
+
+    def _together(self, cases: Cases) -> list[np.ndarray]:
+        """Return the slews that one kernel flies: as many CMGs, and the same if a law asks."""
+        own = self._law.knows_axes
+        kinds = cases.failed if own else np.where(cases.failed == NONE_FAILED, NONE_FAILED, 0)
+        return [np.flatnonzero(kinds == kind) for kind in np.unique(kinds)]
 
     def flies(self, cases: Cases, h0: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """Return whether each design settles in time in every slew, (designs,)."""

@@ -19,7 +19,7 @@ _SATURATED = 0.015  # room left in r^2, for what is between the samples
 _EMPTY = 0.03  # least 2 r left to a plane
 _THIN = 0.06  # |h_y| over the extent that counts as none
 _BISECTIONS = 12
-_GREATEST = 1e3  # size of a coefficient
+_GREATEST = 30.0  # size of a coefficient
 
 
 def bias_bounds(

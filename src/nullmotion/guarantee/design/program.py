@@ -74,7 +74,7 @@ class Program:
         matters = (values < reach) | slopes[:, self.n : -1].any(axis=1)
         slopes, values, reach = slopes[matters], values[matters], reach[matters]
         active = np.zeros(len(values), bool)
-        active[_least(values - reach, _FIRST)] = True
+        active[_least(values / np.maximum(reach, _HELD), _FIRST)] = True
         cost = np.concatenate([-gain, -weight, [penalty]])
         bounds = [(-size, size)] * self.n + [(-1.0, c) for c in ceiling] + [(0.0, None)]
         for _ in range(_ROUNDS):
