@@ -20,6 +20,8 @@ sys.path.insert(0, str(Path(__file__).parent))
 import accuracy
 import guarantees
 import latency
+import lookahead
+import lookahead_triangle
 import plan_search
 import throughput
 from common import HEAD, Row
@@ -51,6 +53,7 @@ def measure(quick: bool) -> tuple[list[Row], str]:
         "Waiting times": latency.rows(quick),
         "Plans, one core": plan_search.rows(quick),
         "Torque capability and certificates": guarantees.rows(quick),
+        "Looking ahead, one core": [*lookahead.rows(quick), *lookahead_triangle.rows(quick)],
         "Accuracy": accuracy.rows(quick),
     }
     everything = []

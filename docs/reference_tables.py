@@ -30,6 +30,7 @@ _SECTIONS: dict[str, type[schema.Section]] = {
     "[sensors]": schema_spacecraft.SensorsSection,
     "[disturbance]": schema_spacecraft.DisturbanceSection,
     "[desaturation]": schema_spacecraft.DesaturationSection,
+    "[reaction_wheel]": schema_spacecraft.ReactionWheelSection,
     "[[event]]": schema_spacecraft.EventSection,
     "[simulation]": schema.SimulationSection,
     "[plan]": schema_spacecraft.PlanSection,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, ClassVar
@@ -38,7 +38,7 @@ class Observation:
         delta_dot: Gimbal rates [rad/s], (n,).
         omega_BN_B: Body rate in B [rad/s], (3,).
         wheel_speed: Wheel speeds [rad/s], (n,).
-        preview: Planned hdot over the coming samples [N m], (k, m).
+        preview: hdot at this and the coming samples, as far as foreseen [N m], (k, m).
     """
 
     delta: Any
@@ -84,6 +84,20 @@ class Law:
     information: ClassVar[tuple[str, ...]] = ()
     traceable: ClassVar[bool] = True
     knows_axes: ClassVar[bool] = False
+
+    @property
+    def information_used(self) -> tuple[str, ...]:
+        """What of `information` it reads with these parameters."""
+        return self.information
+
+    @property
+    def preview_samples(self) -> int:
+        """How many rows of ``preview`` a host law that reads it looks at."""
+        return 0
+
+    def counts(self, state: State) -> Mapping[str, int]:
+        """Return what a host law counted on the way, by name; above 0 it is a status of the run."""
+        return {}
 
     def supports(self, array: CmgArray) -> str:
         """Return why this law cannot steer the array; an empty string if it can."""

@@ -35,12 +35,12 @@ class Nearest:
     """The singular configuration nearest to given gimbal angles.
 
     Attributes:
-        distance: 2-norm over the CMGs of the gimbal rotation to get there [rad].
-        delta_s: The singular gimbal angles [rad], (n,), each within pi/2 of where it was.
-        u: Singular direction, a unit vector of the torque space, (m,); its sign is arbitrary.
+        distance: 2-norm over the CMGs of the gimbal rotation to get there [rad], (...).
+        delta_s: The singular gimbal angles [rad], (..., n), each within pi/2 of where it was.
+        u: Singular direction, a unit vector of the torque space, (..., m); its sign is arbitrary.
     """
 
-    distance: float
+    distance: Any
     delta_s: np.ndarray
     u: np.ndarray
 
@@ -77,20 +77,21 @@ def measures(array: CmgArray, delta: Any) -> dict[str, Any]:
 
 
 def nearest(array: CmgArray, delta: Any) -> Nearest:
-    """Return the singular configuration nearest to gimbal angles (n,) [rad].
+    """Return the singular configuration nearest to gimbal angles (..., n) [rad].
 
-    A CMG whose gimbal axis is along u is singular at any angle and stays where it is, as
-    does one without momentum.
+    Arrays with parallel gimbal axes have it in closed form: `nullmotion.singular_lines`.
+    A CMG whose gimbal axis is along u is singular at any angle and stays where it is, as does
+    one without momentum.
 
     Raises:
         InputError: For angles of another number of CMGs, or angles that are not finite.
     """
     angles = _checked(array, delta)
-    if angles.ndim != 1:
-        raise InputError("delta", angles.tolist(), f"{array.n} gimbal angles (rad)")
-    distance, u = _search(array, angles[None])
-    offset, _, _ = _offsets(*_frames(array, angles[None]), u[:, None])
-    return Nearest(float(distance[0]), angles - offset[0, 0], u[0])
+    table, batch = angles.reshape(-1, array.n), angles.shape[:-1]
+    distance, u = _search(array, table)
+    offset = _offsets(*_frames(array, table), u[:, None])[0][:, 0]
+    found = distance.reshape(batch) if batch else float(distance[0])
+    return Nearest(found, angles - offset.reshape(angles.shape), u.reshape(*batch, array.m))
 
 
 def _checked(array: CmgArray, delta: Any) -> np.ndarray:

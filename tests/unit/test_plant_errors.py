@@ -40,6 +40,8 @@ def test_every_law_meets_plant_errors(law):
     assert (np.abs(off) <= 0.01).all() and (np.abs(off) > 0).any()
     np.testing.assert_array_equal(nominal.h0, 1.0)
 
+    if not kernel.setup.law.traceable:
+        return  # a host law has no kernel to compare with
     plain = run(kernel.setup, backend="python")
     assert (kernel.backend, plain.backend) == ("kernel", "python")
     assert len(plain.t) == len(kernel.t) == 61

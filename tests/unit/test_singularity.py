@@ -190,5 +190,15 @@ def test_bad_angles_are_refused(delta: np.ndarray) -> None:
     for function in (measures, nearest):
         with pytest.raises(nm.InputError, match="delta"):
             function(nm.layouts.pyramid(), delta)
-    with pytest.raises(nm.InputError, match="4 gimbal angles"):
-        nearest(nm.layouts.pyramid(), np.zeros((2, 4)))
+
+
+def test_nearest_has_deltas_leading_axes() -> None:
+    array, delta = angles("pyramid", 6)
+    found = nearest(array, delta.reshape(2, 3, 4))
+    assert found.distance.shape == (2, 3) and found.u.shape == (2, 3, 3)
+    for d, distance, delta_s in zip(
+        delta, found.distance.ravel(), found.delta_s.reshape(-1, 4), strict=True
+    ):
+        alone = nearest(array, d)
+        assert distance == pytest.approx(alone.distance, abs=1e-12)
+        assert np.allclose(delta_s, alone.delta_s, atol=1e-9)

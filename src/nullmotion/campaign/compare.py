@@ -89,7 +89,7 @@ def _case(
         parameters=chosen.given_parameters(case)
         if isinstance(setup, str)
         else sections.written(setup.law),
-        information=tuple(cls.information),
+        information=cls.information if isinstance(setup, str) else setup.law.information_used,
         value=value,
         trajectory=run.trajectory if run else None,
         reason=setup if isinstance(setup, str) else "",

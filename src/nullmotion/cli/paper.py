@@ -34,8 +34,10 @@ def paper(
 
 def show(result: PaperResult) -> None:
     """Print how many printed values come back, and those that do not."""
-    counts = ", ".join(f"{count} {status}" for status, count in sorted(result.counts().items()))
-    typer.echo(f"{result.title}\n{len(result.cells)} printed values: {counts}")
+    found = result.counts()
+    printed = len(result.cells) - found.pop("not printed", 0)
+    counts = ", ".join(f"{count} {status}" for status, count in sorted(found.items()))
+    typer.echo(f"{result.title}\n{printed} printed values: {counts}")
     rows = [_row(cell) for cell in result.cells if cell.status == "differs"]
     if rows:
         head = ("Table", "Row", "Column", "Published", "Computed", "Note")

@@ -23,7 +23,7 @@ class Cell:
         table: Table (or ``text``) in the paper.
         row: Row.
         column: Column; time columns have ``time`` in their name.
-        published: Printed value.
+        published: Printed value; None where the paper shows a curve without its numbers.
         computed: Ours.
         tolerance: Largest difference that counts as equal; 0 for words.
         parameters: Whether the paper prints the parameters behind it, they were inferred
@@ -51,7 +51,9 @@ class Cell:
 
     @property
     def status(self) -> str:
-        """``reproduced``, ``matched`` (with fitted parameters) or ``differs``."""
+        """``reproduced``, ``matched`` (with fitted parameters), ``differs`` or ``not printed``."""
+        if self.published is None:
+            return "not printed"
         if not self.agrees:
             return "differs"
         return "matched" if self.parameters == "fitted" else "reproduced"
@@ -129,7 +131,8 @@ def _beyond(rows: list[dict[str, Any]], note: str) -> list[str]:
 
 def _sentence(counts: Counter[str]) -> str:
     parts = [f"{counts[s]} {s}" for s in ("reproduced", "matched", "differs") if counts[s]]
-    return f"{sum(counts.values())} printed values: {', '.join(parts)}."
+    printed = sum(counts.values()) - counts["not printed"]
+    return f"{printed} printed values: {', '.join(parts)}."
 
 
 def _text(value: Value | bool | list[Any]) -> str:

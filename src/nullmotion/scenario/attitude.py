@@ -10,6 +10,7 @@ from nullmotion import rotation
 from nullmotion.errors import InputError
 from nullmotion.scenario import profile
 from nullmotion.scenario.scenario import Scenario
+from nullmotion.scenario.schema import MissionSection
 from nullmotion.scenario.source import Source
 
 _Q = ["t_s", "q0", "q1", "q2", "q3"]
@@ -46,8 +47,8 @@ def load(source: Source, name: str) -> AttitudeProfile:
     )
 
 
-def check_profile(source: Source, name: str) -> None:
-    """Refuse an attitude profile that no smooth motion leads through.
+def check_profile(mission: MissionSection, source: Source, name: str) -> None:
+    """Refuse an attitude profile that no smooth motion leads through, unless its rows hold.
 
     Raises:
         ProfileError: Saying what it has to be.
@@ -55,6 +56,10 @@ def check_profile(source: Source, name: str) -> None:
     from nullmotion.spacecraft import reference as references
 
     t, q, omega, alpha = load(source, name)
+    if mission.profile_hold:
+        if omega is not None:
+            raise profile.ProfileError(f"a CSV without rates ({','.join(_Q)}): its rows hold still")
+        return
     try:
         references.from_csv_table(t=t, q=q, omega=omega, alpha=alpha, times=t[:1])
     except InputError as error:
@@ -91,6 +96,8 @@ def reference(scenario: Scenario, start: np.ndarray, times: np.ndarray) -> np.nd
     mission = scenario.mission
     if mission.profile is not None:
         t, q, omega, alpha = load(scenario.source, mission.profile)
+        if mission.profile_hold:
+            return references.held(t, q, times)
         return references.from_csv_table(t=t, q=q, omega=omega, alpha=alpha, times=times)
     if mission.slew_time_s is None:
         return None

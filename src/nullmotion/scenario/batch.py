@@ -120,4 +120,4 @@ def _simulated(
 ) -> BatchResult:
     if compiled(base):
         return run_batch(base, setups=setups, **arrays, **options)
-    return merge.one_by_one(base, setups, arrays, options.get("progress"))
+    return merge.one_by_one(base, setups, arrays, options)

@@ -122,6 +122,8 @@ def _surroundings(scenario: Scenario, array: CmgArray, times: np.ndarray) -> dic
         section = getattr(scenario, name)
         if section is not None:
             found[name] = getattr(vehicle, name)(section)
+    if scenario.reaction_wheel is not None:
+        found["reaction_wheel"] = vehicle.reaction_wheel(scenario.reaction_wheel, array)
     if scenario.mission.kind == "attitude":
         found["target"] = attitude.target(scenario)
         found["reference"] = attitude.reference(scenario, found["spacecraft"].q_BN, times)

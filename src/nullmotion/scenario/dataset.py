@@ -27,6 +27,7 @@ _SECTIONS = (
     "sensors",
     "disturbance",
     "desaturation",
+    "reaction_wheel",
     "plan",
 )
 

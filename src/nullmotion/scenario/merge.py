@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from nullmotion.errors import InputError
-from nullmotion.sim.batch import BatchResult, run_each
+from nullmotion.sim.batch import BatchResult
 from nullmotion.sim.setup import Setup
 from nullmotion.sim.trajectory import Trajectory
+from nullmotion.sim.workers import run_each
 
 
 def merged(parts: Sequence[BatchResult], rows: Sequence[np.ndarray]) -> BatchResult:
@@ -49,14 +50,14 @@ def one_by_one(
     base: Setup,
     setups: Sequence[Setup] | None,
     arrays: Mapping[str, np.ndarray],
-    progress: Any,
+    options: Mapping[str, Any],
 ) -> BatchResult:
     """Return the result of runs flown one after another (laws that cannot be traced)."""
     count = len(next(x for x in (setups, *arrays.values()) if x is not None))
     runs = list(setups or [base] * count)
     for key, table in arrays.items():
         runs = [_with(setup, key, row) for setup, row in zip(runs, table, strict=True)]
-    return gathered(run_each(runs, progress))
+    return gathered(run_each(runs, options.get("progress"), options.get("threads")))
 
 
 def _with(setup: Setup, key: str, value: Any) -> Setup:

@@ -17,7 +17,7 @@ _TARGETS = ("target_q_BN", "target_euler_321_deg")
 _KEYS = {
     "momentum-rate": ("hdot_Nm", "profile"),
     "momentum": ("momentum_Nms",),
-    "attitude": (*_TARGETS, "profile", "slew_time_s", "settle_tolerance_deg"),
+    "attitude": (*_TARGETS, "profile", "profile_hold", "slew_time_s", "settle_tolerance_deg"),
 }
 
 
@@ -77,10 +77,11 @@ def _momentum(scenario: Scenario, array: CmgArray, v: Validator) -> None:
 def _attitude(scenario: Scenario, array: CmgArray, v: Validator) -> None:
     mission = scenario.mission
     targets = [key for key in _TARGETS if getattr(mission, key) is not None]
-    if array.m != 3:
+    if array.m != 3 and not (array.m == 2 and scenario.reaction_wheel is not None):
+        wheel = ", or [reaction_wheel] beside it" if array.m == 2 else ""
         allowed = (
-            "an array with torque in all three dimensions "
-            f"({scenario.array.layout} has {array.m}: momentum-rate and momentum missions only)"
+            f"an array with torque in all three dimensions ({scenario.array.layout} has "
+            f"{array.m}: momentum-rate and momentum missions only{wheel})"
         )
         v.add(("mission", "kind"), mission.kind, allowed)
     if len(targets) == 2:
@@ -93,9 +94,11 @@ def _attitude(scenario: Scenario, array: CmgArray, v: Validator) -> None:
     if mission.slew_time_s is not None and mission.profile is not None:
         allowed = "only with a target (a profile has times of its own)"
         v.add(("mission", "slew_time_s"), mission.slew_time_s, allowed)
+    if mission.profile_hold and mission.profile is None:
+        v.add(("mission", "profile_hold"), True, "only together with profile")
     quaternion(v, ("mission", "target_q_BN"), mission.target_q_BN)
     if mission.profile is not None and not targets:
-        _load(scenario, v, lambda name: attitude.check_profile(scenario.source, name))
+        _load(scenario, v, lambda name: attitude.check_profile(mission, scenario.source, name))
 
 
 def _load(scenario: Scenario, v: Validator, read: Any) -> None:

@@ -13,7 +13,7 @@ from nullmotion.law import Law
 from nullmotion.scenario.schema import ArraySection, CustomArraySection, NamedLaw
 from nullmotion.scenario.sections import parameters
 
-_RPM = 2 * np.pi / 60
+RPM = 2 * np.pi / 60
 
 
 def layout(section: ArraySection) -> Layout:
@@ -53,7 +53,7 @@ def momenta(section: ArraySection) -> Any:
     return (
         np.asarray(section.wheel_inertia_kg_m2, float)
         * np.asarray(section.wheel_speed_rpm, float)
-        * _RPM
+        * RPM
     )
 
 

@@ -25,6 +25,7 @@ from nullmotion.scenario.schema_spacecraft import (
     DisturbanceSection,
     EventSection,
     PlanSection,
+    ReactionWheelSection,
     SensorsSection,
     ServoSection,
     SpacecraftSection,
@@ -49,6 +50,7 @@ class Scenario:
         sensors: None when rate and attitude are measured exactly.
         disturbance: None when no torque comes from outside.
         desaturation: None when nothing takes momentum off the array.
+        reaction_wheel: None when the array alone gives torque.
         events: Faults.
         plan: How null motion is planned; None unless the file has such a section.
         requirements: Limits of the summary's numbers, likewise.
@@ -70,6 +72,7 @@ class Scenario:
     sensors: SensorsSection | None = None
     disturbance: DisturbanceSection | None = None
     desaturation: DesaturationSection | None = None
+    reaction_wheel: ReactionWheelSection | None = None
     events: tuple[EventSection, ...] = ()
     plan: PlanSection | None = None
     requirements: RequirementsSection | None = None
@@ -115,6 +118,7 @@ _OPTIONAL = (
     "sensors",
     "disturbance",
     "desaturation",
+    "reaction_wheel",
     "plan",
     "requirements",
 )

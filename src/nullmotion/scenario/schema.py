@@ -136,6 +136,7 @@ class MissionSection(Section):
     target_q_BN: Four | None = None
     target_euler_321_deg: Three | None = None
     profile: str | None = None
+    profile_hold: bool = False
     slew_time_s: Positive | None = None
     settle_tolerance_deg: Annotated[float, Field(gt=0, le=180)] = 0.1
 

@@ -100,6 +100,17 @@ class DesaturationSection(Section):
     threshold_Nms: NotNegative = 0.0
 
 
+class ReactionWheelSection(Section):
+    """``[reaction_wheel]``: gives the third torque dimension beside a planar array."""
+
+    axis: Three | None = None
+    torque_limit_Nm: Positive | None = None
+    momentum_limit_Nms: Positive | None = None
+    wheel_inertia_kg_m2: Positive | None = None
+    speed_limit_rpm: Positive | None = None
+    momentum_Nms: float = 0.0
+
+
 class EventSection(Section):
     """``[[event]]``: a fault of one CMG (counted from 0, failed ones included) from a time on."""
 

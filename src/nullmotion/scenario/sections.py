@@ -158,6 +158,7 @@ _PLAIN: dict[str, type[schema.Section]] = {
     "sensors": schema_spacecraft.SensorsSection,
     "disturbance": schema_spacecraft.DisturbanceSection,
     "desaturation": schema_spacecraft.DesaturationSection,
+    "reaction_wheel": schema_spacecraft.ReactionWheelSection,
     "plan": schema_spacecraft.PlanSection,
 }
 LISTS = ("event",)

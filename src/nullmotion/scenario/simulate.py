@@ -49,7 +49,7 @@ def simulate_batch(
     Args:
         scenario: A scenario, or what `load_scenario` takes.
         metrics: Names of the metrics; all registered ones by default.
-        threads: Threads; one for each core by default.
+        threads: Threads, or processes for a law that runs in Python; one for each core by default.
         progress: Called with the finished share.
         history: Keep every so many steps of every run (0: none).
         **values: Values by key, runs along the leading axis: ``gimbal_deg=starts`` (runs, n),

@@ -11,6 +11,7 @@ from nullmotion.array import CmgArray
 from nullmotion.errors import InputError
 from nullmotion.scenario import mission_checks, vehicle
 from nullmotion.scenario.construction import add_construction
+from nullmotion.scenario.problems import MISSING
 from nullmotion.scenario.scenario import Scenario
 from nullmotion.scenario.toml import Path
 from nullmotion.scenario.validate import Validator
@@ -37,6 +38,7 @@ def check(scenario: Scenario, array: CmgArray, v: Validator) -> None:
         _construct(v, ("controller",), lambda: vehicle.controller(controller))
     _servo(scenario, array, v)
     _disturbance(scenario, v)
+    _reaction_wheel(scenario, array, v)
     for i in range(len(scenario.events)):
         _event(scenario, array, i, v)
 
@@ -79,6 +81,27 @@ def _disturbance(scenario: Scenario, v: Validator) -> None:
         if section.given(key) and getattr(section, other) is None:
             allowed = f"only together with {other}{why.get(other, '')}"
             v.add(("disturbance", key), getattr(section, key), allowed)
+
+
+def _reaction_wheel(scenario: Scenario, array: CmgArray, v: Validator) -> None:
+    section = scenario.reaction_wheel
+    if section is None:
+        return
+    pair = ("wheel_inertia_kg_m2", "speed_limit_rpm")
+    given = [key for key in pair if getattr(section, key) is not None]
+    if len(given) == 1:
+        other = pair[1 - pair.index(given[0])]
+        path = ("reaction_wheel", given[0])
+        v.add(path, getattr(section, given[0]), f"only together with {other}")
+    elif given and section.momentum_limit_Nms is not None:
+        allowed = f"either this or {' and '.join(pair)}"
+        v.add(("reaction_wheel", "momentum_limit_Nms"), section.momentum_limit_Nms, allowed)
+    elif array.m != 2:
+        allowed = f"only beside an array with two torque dimensions (this one has {array.m})"
+        v.add(("reaction_wheel",), MISSING, allowed)
+    else:
+        made = vehicle.reaction_wheel
+        _construct(v, ("reaction_wheel",), lambda: made(section, array).check_beside(array))
 
 
 def _event(scenario: Scenario, array: CmgArray, i: int, v: Validator) -> None:

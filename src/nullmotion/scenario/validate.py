@@ -17,7 +17,7 @@ from nullmotion.spacecraft import controllers
 
 _NEEDED = ("array", "law", "mission", "simulation")
 _ATTITUDE_NEEDS = ("spacecraft", "controller")
-_ATTITUDE_ONLY = (*_ATTITUDE_NEEDS, "sensors", "disturbance", "desaturation")
+_ATTITUDE_ONLY = (*_ATTITUDE_NEEDS, "sensors", "disturbance", "desaturation", "reaction_wheel")
 
 _ALLOWED = {
     "float_type": "a number",

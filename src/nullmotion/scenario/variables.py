@@ -56,6 +56,10 @@ _BODY: tuple[Row, ...] = (
 _SERVO: tuple[Row, ...] = (
     ("speed", _CMG, "rad s-1", "gimbal rate at this instant; rates are its means over steps"),
 )
+_WHEEL: tuple[Row, ...] = (
+    ("wheel_momentum", ("time",), "N m s", "momentum of the reaction wheel along its axis"),
+    ("wheel_torque", ("time",), "N m", "rate of the reaction wheel's momentum"),
+)
 _MOTOR: tuple[Row, ...] = (("motor_torque", _CMG, "N m", "torque of the gimbal motor on its axis"),)
 _MEASURES = {
     "sigma_min": "least singular value of A over the mean momentum",
@@ -102,7 +106,13 @@ def variables(trajectory: Trajectory) -> list[Variable]:
 def _surroundings(trajectory: Trajectory) -> tuple[Row, ...]:
     """Return what a run holds of its spacecraft and servo, where it has them."""
     body, servo = trajectory.setup.spacecraft is not None, trajectory.setup.servo is not None
-    return (_BODY if body else ()) + (_SERVO if servo else ()) + (_MOTOR if body or servo else ())
+    wheel = _WHEEL if trajectory.setup.reaction_wheel is not None else ()
+    return (
+        wheel
+        + (_BODY if body else ())
+        + (_SERVO if servo else ())
+        + (_MOTOR if body or servo else ())
+    )
 
 
 def _geometry(trajectory: Trajectory) -> list[Variable]:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from nullmotion.array import CmgArray
 from nullmotion.scenario import attitude, objects, sections
 from nullmotion.scenario.schema import ArraySection
 from nullmotion.scenario.schema_spacecraft import (
@@ -13,6 +14,7 @@ from nullmotion.scenario.schema_spacecraft import (
     DesaturationSection,
     DisturbanceSection,
     EventSection,
+    ReactionWheelSection,
     SensorsSection,
     ServoSection,
     SpacecraftSection,
@@ -23,6 +25,7 @@ from nullmotion.spacecraft import (
     Disturbance,
     Event,
     Orbit,
+    ReactionWheel,
     Sensors,
     Servo,
     Spacecraft,
@@ -102,6 +105,17 @@ def disturbance(section: DisturbanceSection) -> Disturbance:
 def desaturation(section: DesaturationSection) -> Desaturation:
     """Return the torque that takes momentum off the array."""
     return Desaturation(section.torque_limit_Nm, section.gain_per_s, section.threshold_Nms)
+
+
+def reaction_wheel(section: ReactionWheelSection, array: CmgArray) -> ReactionWheel:
+    """Return the reaction wheel, normal to the array's torque plane unless it has an axis."""
+    assert array.torque_axes is not None
+    axis = np.cross(*array.torque_axes[:2]) if section.axis is None else np.array(section.axis)
+    most = section.momentum_limit_Nms
+    if section.wheel_inertia_kg_m2 is not None and section.speed_limit_rpm is not None:
+        most = section.wheel_inertia_kg_m2 * section.speed_limit_rpm * objects.RPM
+    torque, most = (np.inf if v is None else v for v in (section.torque_limit_Nm, most))
+    return ReactionWheel(axis, torque, most, section.momentum_Nms)
 
 
 def event(section: EventSection, array: ArraySection) -> Event:

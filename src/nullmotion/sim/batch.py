@@ -16,7 +16,7 @@ from nullmotion import tree
 from nullmotion.compile import llvm
 from nullmotion.compile.kernel import LoopKernel
 from nullmotion.errors import InputError
-from nullmotion.sim.run import Progress, _columns, check_history, run, schedule, totals
+from nullmotion.sim.run import Progress, _columns, check_history, schedule, totals
 from nullmotion.sim.setup import Setup
 from nullmotion.sim.stages import loop, passes
 from nullmotion.sim.state import Outcome, Record, parameters
@@ -315,15 +315,3 @@ def _spread(job: _Job, runs: int, threads: int, progress: Progress | None) -> No
             for future in pending:
                 future.cancel()
             raise
-
-
-def run_each(
-    setups: Sequence[Setup], progress: Progress | None = None, **options: Any
-) -> list[Any]:
-    """Run setups one after another (host laws, different structures); return trajectories."""
-    results = []
-    for i, setup in enumerate(setups):
-        results.append(run(setup, **options))
-        if progress:
-            progress((i + 1) / len(setups))
-    return results

@@ -61,16 +61,30 @@ def advanced(setup: Setup, k: Any, s: RunState, p: Parameters) -> dict[str, Any]
     if setup.spacecraft is None or p.spacecraft is None:
         return found | {"impulse": s.impulse + _impulse(setup, s, p, moved, t)}
     vehicle = dynamics.Vehicle(
-        p.spacecraft, p.true_array, p.servo, p.events, p.disturbance, p.desaturation, t
+        p.spacecraft,
+        p.true_array,
+        p.servo,
+        p.events,
+        p.disturbance,
+        p.desaturation,
+        t,
+        _wheel(s, p),
     )
     step = dynamics.INTEGRATORS[setup.integrator]
     start = dynamics.Body(s.q, _struck(s, p, moved), s.impulse)
     body = step(vehicle, start, s.delta, moved, t, p.dt)
+    if p.reaction_wheel is not None:
+        found["wheel"] = s.wheel + p.dt * s.wheel_rate
     return found | {
         "q": rotation.normalised(body.q),
         "omega": body.omega,
         "impulse": body.impulse,
     }
+
+
+def _wheel(s: RunState, p: Parameters) -> dynamics.Wheel | None:
+    wheel = p.reaction_wheel
+    return None if wheel is None else dynamics.Wheel(wheel.axis, s.wheel, s.wheel_rate)
 
 
 def _struck(s: RunState, p: Parameters, moved: Motion) -> Any:

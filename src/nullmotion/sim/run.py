@@ -151,6 +151,7 @@ def assemble(
         stopped_at_s=round(taken * setup.dt, 12) if stopped else None,
         stop_reason=setup.stop[code - 1].reason if stopped else "end of run",
         status=status(setup, outcome, flags),
+        law_counts=law_counts(setup, outcome),
         backend=backend,
         instruction_set=instructions,
     )
@@ -168,9 +169,12 @@ def histories(setup: Setup, columns: Record, taken: int, every: int) -> dict[str
     kept = taken // every + 1
     cut = Record(*[np.array(c[:kept]) for c in columns])
     if taken % every == 0:
-        cut.rates[-1], cut.asked[-1], cut.motor_torque[-1] = np.nan, np.nan, np.nan
+        for acting in (cut.rates, cut.asked, cut.motor_torque, cut.wheel_torque):
+            acting[-1] = np.nan
     found = {"t": np.arange(kept) * (setup.dt * every), **cut._asdict()}
     found |= {"rates_asked": found.pop("asked"), "momentum_wanted": found.pop("wanted")}
+    wheel = {key: found[key] for key in ("wheel_momentum", "wheel_torque")}
+    found |= {k: v[:, 0] if setup.reaction_wheel else None for k, v in wheel.items()}
     if setup.spacecraft is None:
         found |= dict.fromkeys(("q_BN", "omega_BN_B", "reference"))
     return found
@@ -199,4 +203,9 @@ def status(setup: Setup, outcome: Outcome, flags: list[str]) -> list[str]:
     found = list(flags)
     if not (np.isfinite(outcome.delta).all() and np.isfinite(outcome.rates).all()):
         found.append("non-finite")
-    return found
+    return [*found, *(name for name, count in law_counts(setup, outcome).items() if count)]
+
+
+def law_counts(setup: Setup, outcome: Outcome) -> dict[str, int]:
+    """Return what the law counted on the way; nothing for one that was compiled."""
+    return {} if setup.law.traceable else dict(setup.law.counts(outcome.law))

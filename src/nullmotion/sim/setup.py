@@ -16,6 +16,7 @@ from nullmotion.spacecraft import (
     Desaturation,
     Disturbance,
     Event,
+    ReactionWheel,
     Sensors,
     Servo,
     Spacecraft,
@@ -75,6 +76,7 @@ class Setup:
         disturbance: Torque on the body from outside.
         desaturation: Torque from outside that takes momentum off the array.
         events: Faults; each begins with the first step that starts at or after its time.
+        reaction_wheel: Wheel normal to the torque plane of a planar array on a spacecraft.
 
     Raises:
         UnsupportedArrayError: When the law cannot steer the array.
@@ -104,6 +106,7 @@ class Setup:
     disturbance: Disturbance | None = None
     desaturation: Desaturation | None = None
     events: tuple[Event, ...] = ()
+    reaction_wheel: ReactionWheel | None = None
 
     def __post_init__(self) -> None:
         """Check lengths and signs."""
@@ -137,6 +140,8 @@ class Setup:
                 raise InputError("metrics", metric.name, "a metric that needs no spacecraft")
         if self.spacecraft is not None:
             self._check_attitude()
+        elif self.reaction_wheel is not None:
+            raise InputError("reaction_wheel", "given", "only on a spacecraft")
 
     def _check_servo(self, servo: Servo) -> None:
         for key, value in vars(servo).items():
@@ -145,10 +150,7 @@ class Setup:
                 raise InputError(f"servo.{key}", value.tolist(), allowed)
 
     def _check_attitude(self) -> None:
-        if self.array.m != 3:
-            raise InputError(
-                "array", self.array.label, "an array with torque in all three dimensions"
-            )
+        self._check_torque()
         if self.controller is None:
             raise InputError("controller", None, "a controller for the spacecraft")
         if (self.target is None) == (self.reference is None):
@@ -159,6 +161,14 @@ class Setup:
         else:
             table = np.asarray(self.reference, float)
             put(self, "reference", _finite("reference", table, (len(table), 10)))
+
+    def _check_torque(self) -> None:
+        """Ask for torque in all three dimensions, of the array or of array and wheel."""
+        if self.reaction_wheel is not None:
+            self.reaction_wheel.check_beside(self.array)
+        elif self.array.m != 3:
+            allowed = "an array with torque in all three dimensions, or a reaction wheel"
+            raise InputError("array", self.array.label, allowed)
 
     @property
     def true_array(self) -> CmgArray:

@@ -84,6 +84,8 @@ def record(s: RunState) -> Record:
         s.reference,
         s.speed,
         s.motor,
+        s.wheel if isinstance(s.wheel, tuple) else np.array([s.wheel]),
+        s.wheel_rate if isinstance(s.wheel_rate, tuple) else np.array([s.wheel_rate]),
     )
 
 
@@ -91,7 +93,8 @@ def outcome(s: RunState, p: Parameters) -> Outcome:
     """Return what is kept of the final state."""
     array = faults.as_it_is(p.true_array, p.events, s.taken * p.dt)
     momentum = array.momentum(s.delta)
-    return Outcome(s.stop, s.taken, s.delta, s.rates, momentum, s.sums, s.q, s.omega)
+    law = () if p.law.traceable else s.law
+    return Outcome(s.stop, s.taken, s.delta, s.rates, momentum, s.sums, s.q, s.omega, law)
 
 
 class _Run:
@@ -130,6 +133,9 @@ class _Run:
             acceleration=zero if p.servo else nothing,
             reading=reading,
             motor=zero,
+            wheel=p.reaction_wheel.momentum if p.reaction_wheel else nothing,
+            wheel_rate=0.0 if p.reaction_wheel else nothing,
+            preview=nothing,
         )
 
     def command(self, k: Any, row: Any, s: RunState, p: Parameters) -> RunState:
@@ -162,6 +168,7 @@ class _Run:
             period=p.dt * float(self.setup.period_steps),
             delta_dot=s.rates,
             omega_BN_B=None if isinstance(s.omega, tuple) else s.omega,
+            preview=None if isinstance(s.preview, tuple) else s.preview,
         )
         asked, state = p.law.step(array, observation, s.law)
         return s._replace(asked=asked, law=state, queue=(array.limited(asked), *s.queue[:-1]))

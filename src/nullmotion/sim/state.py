@@ -15,6 +15,7 @@ from nullmotion.spacecraft import (
     Desaturation,
     Disturbance,
     Event,
+    ReactionWheel,
     Sensors,
     Servo,
     Spacecraft,
@@ -25,7 +26,8 @@ class RunState(NamedTuple):
     """What a run carries from step to step (floats or symbols); () where there is no such thing.
 
     ``due`` is the rate command in force, ``rates`` the mean rate of the step, ``speed`` the
-    rate at its start, ``reading`` the encoder a step before, ``motor`` the motor torque.
+    rate at its start, ``reading`` the encoder a step before, ``motor`` the motor torque,
+    ``wheel`` the reaction wheel's momentum and ``wheel_rate`` its derivative.
     """
 
     stop: Any
@@ -50,6 +52,9 @@ class RunState(NamedTuple):
     acceleration: Any
     reading: Any
     motor: Any
+    wheel: Any
+    wheel_rate: Any
+    preview: Any
 
 
 class Parameters(NamedTuple):
@@ -73,6 +78,7 @@ class Parameters(NamedTuple):
     disturbance: Disturbance | None
     desaturation: Desaturation | None
     events: tuple[Event, ...]
+    reaction_wheel: ReactionWheel | None
 
     @property
     def true_array(self) -> CmgArray:
@@ -94,10 +100,12 @@ class Record(NamedTuple):
     reference: Any
     speed: Any
     motor_torque: Any
+    wheel_momentum: Any
+    wheel_torque: Any
 
 
 class Outcome(NamedTuple):
-    """What is kept of the final state."""
+    """What is kept of the final state; ``law`` is the state of a law that runs in Python."""
 
     stop: Any
     taken: Any
@@ -107,6 +115,7 @@ class Outcome(NamedTuple):
     sums: tuple[Any, ...]
     q_BN: Any
     omega_BN_B: Any
+    law: Any
 
 
 def parameters(setup: Setup) -> Parameters:
@@ -132,6 +141,7 @@ def parameters(setup: Setup) -> Parameters:
         setup.disturbance,
         setup.desaturation,
         setup.events,
+        setup.reaction_wheel,
     )
 
 

@@ -39,6 +39,9 @@ class Trajectory:
         q_BN: Attitude, (N+1, 4); None without a spacecraft, as the next two.
         omega_BN_B: Body rate in B [rad/s], (N+1, 3).
         reference: Attitude to be reached or followed, q_RN, (N+1, 4).
+        wheel_momentum: Of the reaction wheel [N m s], (N+1,); None without one, as the next.
+        wheel_torque: Rate of its momentum [N m], (N+1,); NaN in the last row.
+        law_counts: What the law counted on the way, such as solutions that did not come.
     """
 
     setup: Setup
@@ -60,6 +63,9 @@ class Trajectory:
     q_BN: np.ndarray | None = None
     omega_BN_B: np.ndarray | None = None
     reference: np.ndarray | None = None
+    wheel_momentum: np.ndarray | None = None
+    wheel_torque: np.ndarray | None = None
+    law_counts: Mapping[str, int] = field(default_factory=dict)
 
     @cached_property
     def momentum(self) -> np.ndarray:
@@ -100,6 +106,8 @@ class Trajectory:
             return None
         array = self.setup.true_array
         total = self.omega_BN_B @ craft.inertia + self.momentum @ array.torque_axes
+        if self.setup.reaction_wheel is not None and self.wheel_momentum is not None:
+            total = total + self.wheel_momentum[:, None] * self.setup.reaction_wheel.axis
         if servo is not None and self.speed is not None:
             total = total + (servo.inertia * self.speed) @ array.gimbal_axes
         return np.einsum("kij,ki->kj", _matrices(self.q_BN), total)
@@ -179,6 +187,7 @@ class Trajectory:
             "desaturation_due_at_s": self.desaturation_due_at_s,
             **self._attitude(),
             **{key: float(value) for key, value in self.metrics.items()},
+            **({"law_counts": dict(self.law_counts)} if self.law_counts else {}),
             "status": list(self.status) or ["ok"],
             "backend": self.backend,
             "instruction_set": self.instruction_set,

@@ -6,6 +6,7 @@ from nullmotion.spacecraft.body import Spacecraft
 from nullmotion.spacecraft.controller import AttitudeObservation, Controller
 from nullmotion.spacecraft.disturbance import Desaturation, Disturbance, Orbit
 from nullmotion.spacecraft.events import Event
+from nullmotion.spacecraft.reaction_wheel import ReactionWheel
 from nullmotion.spacecraft.sensors import Sensors
 from nullmotion.spacecraft.servo import Servo
 
@@ -16,6 +17,7 @@ __all__ = [
     "Disturbance",
     "Event",
     "Orbit",
+    "ReactionWheel",
     "Sensors",
     "Servo",
     "Spacecraft",

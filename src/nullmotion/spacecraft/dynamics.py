@@ -41,6 +41,14 @@ class Slope(NamedTuple):
     impulse: Any
 
 
+class Wheel(NamedTuple):
+    """A reaction wheel over a step: its axis in B, momentum at the start and rate of momentum."""
+
+    axis: Any
+    momentum: Any
+    rate: Any
+
+
 class Vehicle(NamedTuple):
     """Everything that the equations of motion take."""
 
@@ -51,6 +59,7 @@ class Vehicle(NamedTuple):
     disturbance: Disturbance | None
     desaturation: Desaturation | None
     start: Any  # time of the step's start [s]
+    wheel: Wheel | None = None
 
     def slope(self, body: Body, delta: Any, motion: Motion, t: Any, since: Any) -> Slope:
         """Return the derivatives at a time t, ``since`` the start of the step."""
@@ -65,6 +74,11 @@ class Vehicle(NamedTuple):
         reaction = given @ basis
         if craft.momentum_coupling:
             momentum = momentum + array_momentum
+        if self.wheel is not None:
+            reaction = reaction + self.wheel.rate * self.wheel.axis
+            if craft.momentum_coupling:
+                own = self.wheel.momentum + since * self.wheel.rate
+                momentum = momentum + own * self.wheel.axis
         if faults.of_kind(self.events, "spin-down"):
             lost = faults.momentum_loss(self.array, self.events, t, delta, self.start)
             reaction = reaction + lost @ basis

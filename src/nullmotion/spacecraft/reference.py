@@ -49,6 +49,23 @@ def eigenaxis_slew(q_start: Any, q_end: Any, slew_time: float, times: Any) -> np
     return np.concatenate([q, rate * axis, acceleration * axis], axis=1)
 
 
+def held(t: Any, q: Any, times: Any) -> np.ndarray:
+    """Return a reference that stands still at each row of a table until the next, (len(times), 10).
+
+    Args:
+        t: Time of each row [s], increasing, (k,); the first holds before it, too.
+        q: q_RN, scalar first, (k, 4).
+        times: Time of each row wanted [s].
+
+    Raises:
+        InputError: For a zero quaternion.
+    """
+    unit = np.array([checked_quaternion("profile", row) for row in q])
+    late = np.asarray(times, float) * (1 + 1e-12) + 1e-9  # a sample at a row's time has that row
+    row = np.maximum(np.searchsorted(np.asarray(t, float), late, side="right") - 1, 0)
+    return np.concatenate([unit[row], np.zeros((len(row), 6))], axis=1)
+
+
 def from_csv_table(t: Any, q: Any, omega: Any, alpha: Any, times: Any) -> np.ndarray:
     """Return a given history of the attitude at other times, (len(times), 10).
 
