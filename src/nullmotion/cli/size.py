@@ -34,8 +34,8 @@ def size(
         from nullmotion.sizing import size as search
 
         found = search(wanted, progress)
+    show(found)  # even if the folder cannot be written to after all
     write(found, target)
-    show(found)
     flown = [f"{row.layout}.toml" for row in found.rows if row.status == "sized"]
     hint = f"; fly one with: nullmotion run {target / flown[0]}" if flown else ""
     typer.echo(f"Results in {target} (open {PAGE}){hint}")

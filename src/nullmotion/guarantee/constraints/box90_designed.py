@@ -19,11 +19,11 @@ class Box90Designed(TwoPlanes):
     capability than both published biases at every |h| (`nullmotion design constraint`):
 
         radius of    envelope   TC >= 0.5   TC >= 1    least TC at |h| = 0.4    1    1.6
-        designed        1.927       1.476     0.821                    1.222 0.877 0.387
-        cubic           1.790       1.391     0.743                    1.161 0.810 0.308
-        spherical       1.834       1.415     0.804                    1.185 0.872 0.317
+        designed        1.928       1.476     0.821                    1.223 0.878 0.388
+        cubic           1.790       1.391     0.744                    1.161 0.810 0.309
+        spherical       1.835       1.416     0.805                    1.186 0.873 0.318
 
-    No plane is without momentum below |h| = 1.972. TC is 1.325 at no momentum.
+    No plane is without momentum below |h| = 1.973. TC is 1.326 at no momentum.
 
     Args:
         terms: Rows (i, j, k, c).

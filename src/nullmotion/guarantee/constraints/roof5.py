@@ -26,7 +26,7 @@ class Roof5(TwoPlanes):
     (`nullmotion design constraint --layout roof5`) with an envelope of at least 1.9:
 
         radius of     envelope   TC >= 0.5   TC >= 1   TC >= 1.25
-                         1.941       1.474     0.862        0.500
+                         1.941       1.475     0.863        0.500
 
     No plane is without momentum below |h| = 1.941. TC is 1.350 at no momentum.
 

@@ -21,10 +21,10 @@ class Roof6(TwoPlanes):
     the radii of TC >= 0.5, 1 and 1.5 with an envelope of at least 2.9:
 
         radius of                      envelope   TC >= 0.5   TC >= 1   TC >= 1.5
-        designed                          2.913       2.471     1.847       1.124
-        product of parabolas (Eq 51)      2.151       2.141     1.854       0.844
+        designed                          2.913       2.472     1.847       1.124
+        product of parabolas (Eq 51)      2.151       2.142     1.854       0.845
 
-    No plane is without momentum below |h| = 2.991. TC is 1.801 at no momentum; the greatest
+    No plane is without momentum below |h| = 2.992. TC is 1.801 at no momentum; the greatest
     of any linear right inverse is 2.
 
     Args:
