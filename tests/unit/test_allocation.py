@@ -71,6 +71,7 @@ def paper_cost(steering, array, obs, memory, rates):
     return cost
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("midpoint", [False, True])
 def test_program_is_equation_42(triangle, rng, midpoint):
     steering = law(midpoint=midpoint)
@@ -87,6 +88,7 @@ def test_program_is_equation_42(triangle, rng, midpoint):
     np.testing.assert_allclose(np.diff(ours), np.diff(theirs), rtol=1e-6, atol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", ["triangle", "pyramid"])
 def test_compiled_blocks_are_those_of_the_source(layout, rng):
     array = nm.layouts.create(layout, h0=2.0)

@@ -151,6 +151,7 @@ def test_a_program_with_few_active_rows_is_the_whole_program(rng):
     assert found is not None and gain @ found.change == pytest.approx(-whole.fun, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_few_steps_improve_the_start_and_keep_the_envelope():
     family = family_of("box90")
     goal = goal_of(family, "radius", (0.5,), envelope=1.7)

@@ -14,6 +14,7 @@ def _run(*arguments: str) -> int:
     return guard.call(app, ["guarantee", *arguments])
 
 
+@pytest.mark.slow
 def test_both_given_and_checked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A claim is proven, written, and checked from its file."""
     out = tmp_path / "g"
@@ -36,6 +37,7 @@ def test_a_false_claim(capsys: pytest.CaptureFixture[str]) -> None:
     assert "false, TC = 0.4" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_one_given(capsys: pytest.CaptureFixture[str]) -> None:
     """The other is searched and proven, in SI if asked."""
     si = ("--h0-Nms", "2", "--rate-limit-deg-s", "60")

@@ -210,6 +210,7 @@ def test_bad_gains_are_refused(name: str, own: Any) -> None:
         laws.create(name, **own)
 
 
+@pytest.mark.slow
 def test_parameters_of_the_constraint_may_differ_between_runs() -> None:
     array, start = layouts.box90(), np.array([0.6, -0.6, 2.5, 3.7])
     made = [

@@ -54,6 +54,7 @@ ARRAYS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ARRAYS)
 @pytest.mark.parametrize("direction", [(-1, 0, 0), (0.6, -0.64, 0.48)])
 def test_other_arrays_go_the_same_way(name, direction):
@@ -108,6 +109,7 @@ def test_a_known_delay_is_allowed_for():
     assert worst(0.02) < 1e-6 < 1e-3 < worst(0.0)
 
 
+@pytest.mark.slow
 def test_a_preview_is_used_before_the_torque_comes():
     """Nothing for a second, then 1.5 times rate authority: what is known can be prepared for."""
     hdot = np.zeros((300, 3))
@@ -158,6 +160,7 @@ def test_a_path_ends_at_the_envelope(rng):
     assert (inside <= envelope.reach / 0.97 + 1e-12).all()
 
 
+@pytest.mark.slow
 def test_slew_with_unknown_torque_beats_sr_tenfold():
     base = build.setup(nm.load_scenario("elliptic-slew"))
 
