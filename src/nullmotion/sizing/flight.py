@@ -91,7 +91,11 @@ class Flights:
             kernel.run(state, values, rows, none, out, start, count, 0, total, True)
 
         with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-            list(pool.map(block, range(0, padded, lanes)))
+            try:
+                list(pool.map(block, range(0, padded, lanes)))
+            except BaseException:  # Ctrl-C does not wait for the other blocks
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
         return out[0, :runs]
 
 
