@@ -176,3 +176,23 @@ def test_what_holds_below_a_gap_is_not_found():
         lambda v, _: (v >= 2.0) | ((v > 0.5) & (v < 1.0)), np.array([3.0]), 1.2, 1e-3
     )
     assert found[0] == pytest.approx(2.0, rel=2e-3)
+
+
+def test_ctrl_c_in_a_proof_is_passed_on():
+    class Slow:
+        def certificate(self, radius, torque_capability):
+            return type("Broken", (), {"reason": certified.INTERRUPTED})()
+
+    with pytest.raises(KeyboardInterrupt):
+        certified.proofs(Slow(), [certified.Claim(0.5, 0.5)])
+
+
+def test_claims_cover_the_demand_in_balls():
+    t = np.linspace(0.0, 1.0, 101)
+    bound = certified.Bound(2.0 * t, 3.0 * (1.0 - t) + 0.1)
+    found = certified.claims(bound, h0=4.0, rate=2.0)
+    radii = [claim.radius for claim in found]
+    assert radii == sorted(radii) and radii[-1] == pytest.approx(2.0 / 4.0)
+    for h, torque in zip(*bound, strict=True):
+        own = next(claim for claim in found if h / 4.0 <= claim.radius * (1 + 1e-12))
+        assert torque <= 4.0 * 2.0 * own.capability * (1 + 1e-9)

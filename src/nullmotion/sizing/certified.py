@@ -25,6 +25,7 @@ from nullmotion.sizing.axes import frames
 from nullmotion.sizing.profile import RateProfile
 from nullmotion.sizing.requirement import Requirement
 
+INTERRUPTED = "interrupted"
 _BALLS = np.array([0.9, 1.0])  # radii over the greatest: torque falls off near the last
 _SLACK = 0.99  # of the least capability that was found: a proof needs room
 _FEEDBACK = 0.1  # of the greatest torque: asked at every momentum, for what the slew leaves out
@@ -103,10 +104,16 @@ def claims(bound: Bound, h0: float, rate: float) -> list[Claim]:
 
 
 def proofs(constraint: Constraint, wanted: list[Claim]) -> list[dict[str, Any]]:
-    """Return what became of each claim: the certificate without its boxes."""
+    """Return what became of each claim: the certificate without its boxes.
+
+    Raises:
+        KeyboardInterrupt: On Ctrl-C.
+    """
     found = []
     for claim in wanted:
         made = constraint.certificate(claim.radius, claim.capability)
+        if made.reason == INTERRUPTED:  # a proof comes back on Ctrl-C
+            raise KeyboardInterrupt
         record: dict[str, Any] = {"radius": made.radius}
         record["torque_capability"] = made.torque_capability
         record |= {"proven": made.proven, "statement": made.statement, "boxes": made.boxes}
