@@ -1,0 +1,215 @@
+"""Weighted VSCMG steering: gimbals give the torque, wheels where gimbals cannot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Literal, NamedTuple
+
+import numpy as np
+
+from nullmotion import linalg, ops
+from nullmotion.array.model import CmgArray
+from nullmotion.errors import InputError
+from nullmotion.law import Claim, Law, Observation, check_parameters
+from nullmotion.vscmg.hardware import torque_matrix
+
+Goal = Literal["momentum", "equalise", "power", "none"]
+_TINY = 1e-30  # (N m s)^2: an inverse stays finite where nothing turns and nothing can
+
+
+class _Command(NamedTuple):
+    """Wheel accelerations and gimbal rates, a pair of vectors (n,)."""
+
+    wheel: Any
+    gimbal: Any
+
+
+@dataclass(frozen=True)
+class VscmgWeighted(Law):
+    """Weighted inverse of the whole VSCMG array with null motion (Kim et al., Eqs 27-35).
+
+        [Omega_dot; delta_dot] = Q_W^+ hdot + N S sigma,   Q = [C_W I_W, C_T I_W Omega + ...]
+        Q_W^+ = W Q^T (Q W Q^T)^-1,   N = 1 - Q_W^+ Q,   W = diag(W_Omega0 e^(lambda1 f), W_delta)
+        f = -det(C_T C_T^T),   S = diag(sech(1 / (k_d det + epsilon)), sech(k_g det))
+
+    sigma holds, for the gimbals, -k_gamma d gamma / d delta (gamma = gamma0 e^(lambda2 f) falls on
+    the way out of a singularity; the paper's sign climbs it), and for the wheels what makes
+    Omega_dot = a (Eqs 42-43): a = k_m mu for momentum management, mu = I_W (Omega_d - Omega).
+    By Woodbury's identity the inverse in Eq 43 is 1 + W_Omega Q_1^T (Q_2 W_delta Q_2^T)^-1 Q_1 (Q_1,
+    Q_2: halves of Q). It does not exist where gimbals give no torque: there
+    Q_2 W_delta Q_2^T + damping / s_w^2 (Q_1 W_Omega Q_1^T) is inverted, and wheels serve the torque.
+
+    Unless `as_published`, the torque keeps its direction when a gimbal rate or a wheel's torque,
+    power or speed would pass its limit: first Q_W^+ hdot is scaled, then null motion gets what
+    is left. Wheels without torque (a dead motor) have weight 0.
+
+    Args:
+        W_Omega0: Weight of wheel accelerations at a regular state.
+        W_delta: Weight of gimbal rates.
+        lambda1: How much the wheels' weight falls off away from singular states.
+        lambda2: Decay of gamma.
+        gamma0: gamma at a singular state.
+        k_gamma: Gain of the gimbals' null motion [rad/s].
+        k_d: In s_w.
+        k_g: In s_g.
+        epsilon: In s_w.
+        k_m: Gain of the wheels' goal [1/(kg m^2 s)]; mu falls as e^(-I_W k_m t).
+        wheel_speed_rad_s: Omega_d; None for h0 / I_W of the array as it was designed.
+        goal: What null motion does to the wheels: ``momentum`` brings each to Omega_d, ``equalise``
+            to their mean, ``power`` gives `power_W` to them (negative: takes it), ``none`` nothing.
+        power_W: Power into the wheels [W].
+        damping: Of the inverse in Eq 43, as above.
+        as_published: Limits are left to the array.
+    """
+
+    name: ClassVar[str] = "vscmg-weighted"
+    full_name: ClassVar[str] = "Weighted VSCMG steering"
+    citation: ClassVar[str] = (
+        "Kim, Leve, Fitz-Coy & Dixon, J. Guid. Control Dyn. 35 (2012); Schaub, Vadali & Junkins (1998)"
+    )
+    claims: ClassVar[frozenset[Claim]] = frozenset({Claim.FINITE, Claim.STATELESS, Claim.TIMELESS})
+    information: ClassVar[tuple[str, ...]] = ("wheel_speed", "torque_matrix")
+    turns_wheels: ClassVar[bool] = True
+
+    W_Omega0: float = 100.0
+    W_delta: float = 1.0
+    lambda1: float = 1.0
+    lambda2: float = 1.0
+    gamma0: float = 1.0
+    k_gamma: float = 0.1
+    k_d: float = 10.0
+    k_g: float = 1.0
+    epsilon: float = 0.1
+    k_m: float = 10.0
+    wheel_speed_rad_s: float | None = None
+    goal: Goal = "momentum"
+    power_W: float = 0.0
+    damping: float = 1.0
+    as_published: bool = False
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        if self.goal not in ("momentum", "equalise", "power", "none"):
+            allowed = "'momentum', 'equalise', 'power' or 'none'"
+            raise InputError("law.goal", self.goal, allowed)
+        positive = ("W_Omega0", "W_delta", "k_d", "epsilon", "damping")
+        rest = ("lambda1", "lambda2", "gamma0", "k_gamma", "k_g", "k_m", "wheel_speed_rad_s")
+        check_parameters(self, positive, rest)
+
+    def supports(self, array: CmgArray) -> str:
+        """Ask for flywheels whose speed may change."""
+        return "" if array.wheels is not None else "needs variable-speed wheels (array.wheels)"
+
+    def init(self, array: CmgArray, delta: Any) -> Any:
+        """Return the wheel speeds that the array was designed for [rad/s], (n,)."""
+        return array.design_speed
+
+    def step(self, array: CmgArray, obs: Observation, state: Any) -> tuple[Any, Any]:
+        """Return gimbal rates and wheel accelerations as a pair, and the state."""
+        n, wheels = array.n, array.wheels
+        assert wheels is not None
+        if obs.wheel_speed is None:
+            obs = replace(obs, wheel_speed=array.design_speed)
+        Q = obs.torque_matrix
+        if Q is None:
+            Q = torque_matrix(array, obs.delta, obs.wheel_speed)
+        C_T = array.transverse_directions(obs.delta)
+        C_W = array.wheel_axes(obs.delta)
+        gram = C_T @ C_T.T
+        det = ops.maximum(linalg.det(gram), 0.0)
+        alive = ops.where(ops.less(0.0, wheels.torque_limit), 1.0, 0.0)
+        W = _Command(self.W_Omega0 * ops.exp(-self.lambda1 * det) * alive, np.full(n, self.W_delta))
+        halves = Q[:, :n], Q[:, n:]
+        wanted = self._ranged(halves, W, obs.hdot)
+        low, high = self._bounds(array, obs)
+        share = 1.0 if self.as_published else _share(wanted, low, high)
+        wanted = _Command(share * wanted.wheel, share * wanted.gimbal)
+        climb = self._climb(C_T, C_W, gram, det)
+        goal = alive * self._acceleration(array, obs, state)
+        s_w = _sech(1.0 / (self.k_d * det + self.epsilon))
+        null = self._null(halves, W, wanted, goal, climb, self.damping / (s_w * s_w))
+        left = 1.0
+        if not self.as_published:
+            rest = [b - w for b, w in zip(low, wanted, strict=True)]
+            room = [b - w for b, w in zip(high, wanted, strict=True)]
+            left = _share(null, _Command(*rest), _Command(*room))
+        rates = wanted.gimbal + left * null.gimbal
+        return (rates, wanted.wheel + left * null.wheel), state
+
+    def _ranged(self, halves: tuple[Any, Any], W: _Command, torque: Any) -> _Command:
+        """Return Q_W^+ torque, damped to rounding where Q has lost rank."""
+        Q1, Q2 = halves
+        M = (Q1 * W.wheel) @ Q1.T + (Q2 * W.gimbal) @ Q2.T
+        y = linalg.solve(_regular(M), torque)
+        return _Command(W.wheel * (Q1.T @ y), W.gimbal * (Q2.T @ y))
+
+    def _null(
+        self,
+        halves: tuple[Any, Any],
+        W: _Command,
+        wanted: _Command,
+        goal: Any,
+        climb: Any,
+        damping: Any,
+    ) -> _Command:
+        """Return N [v; climb] with v so that the wheels' part is goal - wanted (Eqs 42, 43)."""
+        Q1, Q2 = halves
+        wheel_part, gimbal_part = (Q1 * W.wheel) @ Q1.T, (Q2 * W.gimbal) @ Q2.T
+        beside = self._ranged(halves, W, Q2 @ climb)
+        v = goal - wanted.wheel + beside.wheel
+        G = gimbal_part + damping * wheel_part
+        v = v + W.wheel * (Q1.T @ linalg.solve(_regular(G), Q1 @ v))
+        used = self._ranged(halves, W, Q1 @ v)
+        return _Command(v - used.wheel - beside.wheel, climb - used.gimbal - beside.gimbal)
+
+    def _climb(self, C_T: Any, C_W: Any, gram: Any, det: Any) -> Any:
+        """Return -s_g k_gamma d gamma / d delta: the way out of a singularity, (n,)."""
+        adjugate = linalg.adjugate(gram)
+        slope = -2.0 * np.array([C_T[:, i] @ (adjugate @ C_W[:, i]) for i in range(C_T.shape[1])])
+        gamma = self.gamma0 * ops.exp(-self.lambda2 * det)
+        return (_sech(self.k_g * det) * self.k_gamma * self.lambda2 * gamma) * slope
+
+    def _acceleration(self, array: CmgArray, obs: Observation, design: Any) -> Any:
+        """Return the wheel accelerations that null motion aims at [rad/s^2], (n,)."""
+        inertia, speed = array.wheels.inertia, obs.wheel_speed  # type: ignore[union-attr]
+        gain = self.k_m * inertia
+        if self.goal == "momentum":
+            aim = design if self.wheel_speed_rad_s is None else self.wheel_speed_rad_s
+            return gain * (aim - speed)
+        if self.goal == "equalise":
+            return gain * (sum(speed) * (1.0 / array.n) - speed)
+        if self.goal == "power":
+            h = inertia * speed
+            return (self.power_W / ops.maximum(h @ h, _TINY)) * h
+        return 0.0 * speed
+
+    def _bounds(self, array: CmgArray, obs: Observation) -> tuple[_Command, _Command]:
+        low, high = array.wheels.bounds(obs.wheel_speed, obs.period)  # type: ignore[union-attr]
+        return _Command(low, -array.rate_limit), _Command(high, array.rate_limit)
+
+
+def _share(command: _Command, low: _Command, high: _Command) -> Any:
+    """Return the largest factor up to 1 that keeps a command within bounds about 0."""
+    share: Any = 1.0
+    for value, least, most in zip(command, low, high, strict=True):
+        for i in range(len(value)):
+            bound = ops.where(ops.less(value[i], 0.0), -least[i], most[i])
+            size = ops.absolute(value[i])
+            over = ops.less(ops.maximum(bound, 0.0), size)
+            share = ops.minimum(
+                share, ops.where(over, ops.maximum(bound, 0.0) / (size + _TINY), 1.0)
+            )
+    return share
+
+
+def _regular(M: Any) -> Any:
+    """Return a symmetric matrix with what keeps its inverse finite: 1e-12 of its mean, and a bit."""
+    m = M.shape[0]
+    mean = sum(M[i, i] for i in range(m)) * (1.0 / m)
+    return M + (1e-12 * mean + _TINY) * np.eye(m)
+
+
+def _sech(x: Any) -> Any:
+    """Return 1 / cosh x for x >= 0."""
+    e = ops.exp(-ops.minimum(x, 700.0))
+    return 2.0 * e / (1.0 + e * e)
