@@ -139,9 +139,20 @@ class CmgArray:
         return ops.where(ops.less(least, np.inf), least, np.pi)
 
     @property
+    def flywheels(self) -> Wheels:
+        """The flywheels of variable-speed CMGs.
+
+        Raises:
+            InputError: When the wheels' speeds are constant.
+        """
+        if self.wheels is None:
+            raise InputError("array.wheels", None, "flywheels, for variable-speed CMGs")
+        return self.wheels
+
+    @property
     def design_speed(self) -> Any:
         """Wheel speeds that give the momenta h0 [rad/s], (n,); for VSCMGs."""
-        return self.h0 / self.wheels.inertia  # type: ignore[union-attr]
+        return self.h0 / self.flywheels.inertia
 
     def _spin(self) -> Any:
         return (self.spin_axes @ self._basis.T) * self.h0[:, None]

@@ -1,4 +1,4 @@
-"""The flywheels of variable-speed CMGs: inertia about the spin axis and what their motors can do."""
+"""The flywheels of variable-speed CMGs: their inertia and what their motors can do."""
 
 from __future__ import annotations
 

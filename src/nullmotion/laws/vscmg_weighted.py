@@ -35,9 +35,10 @@ class VscmgWeighted(Law):
     sigma holds, for the gimbals, -k_gamma d gamma / d delta (gamma = gamma0 e^(lambda2 f) falls on
     the way out of a singularity; the paper's sign climbs it), and for the wheels what makes
     Omega_dot = a (Eqs 42-43): a = k_m mu for momentum management, mu = I_W (Omega_d - Omega).
-    By Woodbury's identity the inverse in Eq 43 is 1 + W_Omega Q_1^T (Q_2 W_delta Q_2^T)^-1 Q_1 (Q_1,
-    Q_2: halves of Q). It does not exist where gimbals give no torque: there
-    Q_2 W_delta Q_2^T + damping / s_w^2 (Q_1 W_Omega Q_1^T) is inverted, and wheels serve the torque.
+    With the halves Q_1, Q_2 of Q the inverse in Eq 43 is, by Woodbury's identity,
+    1 + W_Omega Q_1^T (Q_2 W_delta Q_2^T)^-1 Q_1. It does not exist where gimbals give no torque:
+    Q_2 W_delta Q_2^T + damping / s_w^2 (Q_1 W_Omega Q_1^T) is inverted instead, and there the
+    wheels serve the torque.
 
     Unless `as_published`, the torque keeps its direction when a gimbal rate or a wheel's torque,
     power or speed would pass its limit: first Q_W^+ hdot is scaled, then null motion gets what
@@ -65,7 +66,8 @@ class VscmgWeighted(Law):
     name: ClassVar[str] = "vscmg-weighted"
     full_name: ClassVar[str] = "Weighted VSCMG steering"
     citation: ClassVar[str] = (
-        "Kim, Leve, Fitz-Coy & Dixon, J. Guid. Control Dyn. 35 (2012); Schaub, Vadali & Junkins (1998)"
+        "Kim, Leve, Fitz-Coy & Dixon, J. Guid. Control Dyn. 35 (2012), Eqs 27-43; "
+        "Schaub, Vadali & Junkins, J. Astronaut. Sci. 46 (1998)"
     )
     claims: ClassVar[frozenset[Claim]] = frozenset({Claim.FINITE, Claim.STATELESS, Claim.TIMELESS})
     information: ClassVar[tuple[str, ...]] = ("wheel_speed", "torque_matrix")
@@ -106,8 +108,7 @@ class VscmgWeighted(Law):
 
     def step(self, array: CmgArray, obs: Observation, state: Any) -> tuple[Any, Any]:
         """Return gimbal rates and wheel accelerations as a pair, and the state."""
-        n, wheels = array.n, array.wheels
-        assert wheels is not None
+        n, wheels = array.n, array.flywheels
         if obs.wheel_speed is None:
             obs = replace(obs, wheel_speed=array.design_speed)
         Q = obs.torque_matrix
@@ -171,7 +172,7 @@ class VscmgWeighted(Law):
 
     def _acceleration(self, array: CmgArray, obs: Observation, design: Any) -> Any:
         """Return the wheel accelerations that null motion aims at [rad/s^2], (n,)."""
-        inertia, speed = array.wheels.inertia, obs.wheel_speed  # type: ignore[union-attr]
+        inertia, speed = array.flywheels.inertia, obs.wheel_speed
         gain = self.k_m * inertia
         if self.goal == "momentum":
             aim = design if self.wheel_speed_rad_s is None else self.wheel_speed_rad_s
@@ -184,7 +185,7 @@ class VscmgWeighted(Law):
         return 0.0 * speed
 
     def _bounds(self, array: CmgArray, obs: Observation) -> tuple[_Command, _Command]:
-        low, high = array.wheels.bounds(obs.wheel_speed, obs.period)  # type: ignore[union-attr]
+        low, high = array.flywheels.bounds(obs.wheel_speed, obs.period)
         return _Command(low, -array.rate_limit), _Command(high, array.rate_limit)
 
 
@@ -203,7 +204,7 @@ def _share(command: _Command, low: _Command, high: _Command) -> Any:
 
 
 def _regular(M: Any) -> Any:
-    """Return a symmetric matrix with what keeps its inverse finite: 1e-12 of its mean, and a bit."""
+    """Return a symmetric matrix and what keeps its inverse finite: 1e-12 of its mean."""
     m = M.shape[0]
     mean = sum(M[i, i] for i in range(m)) * (1.0 / m)
     return M + (1e-12 * mean + _TINY) * np.eye(m)

@@ -33,7 +33,7 @@ def spun(array: CmgArray, s: RunState) -> CmgArray:
     """Return an array with the momenta of its wheels as they turn now."""
     if not turning(s):
         return array
-    return array.altered(h0=array.wheels.inertia * s.spin)  # type: ignore[union-attr]
+    return array.altered(h0=array.flywheels.inertia * s.spin)
 
 
 def started(setup: Setup, p: Parameters) -> dict[str, Any]:
@@ -58,7 +58,7 @@ def within_limits(
     array: CmgArray, rates: Any, accelerations: Any, speed: Any, period: Any
 ) -> tuple[Any, Any]:
     """Return gimbal rates and wheel accelerations that the hardware allows."""
-    low, high = array.wheels.bounds(speed, period)  # type: ignore[union-attr]
+    low, high = array.flywheels.bounds(speed, period)
     return array.limited(rates), ops.clip(accelerations, low, high)
 
 
@@ -123,10 +123,10 @@ def drive(setup: Setup, k: Any, s: RunState, p: Parameters) -> RunState:
     asked, acceleration = s.due[:n], s.due[n:]
     moved = motion.ideal(array, p.events, s.delta, asked, s.previous, t, dt)
     alive = faults.running(p.events, n, t)
-    low, high = array.wheels.bounds(s.spin, dt)  # type: ignore[union-attr]
+    low, high = array.flywheels.bounds(s.spin, dt)
     acceleration = ops.clip(acceleration, low, high) * alive
     if p.spacecraft is None:
-        given = array.wheels.inertia * acceleration  # type: ignore[union-attr]
+        given = array.flywheels.inertia * acceleration
         return s._replace(
             rates=moved.rate, speed=moved.rate, spin_rate=acceleration, spin_torque=given
         )
@@ -135,7 +135,7 @@ def drive(setup: Setup, k: Any, s: RunState, p: Parameters) -> RunState:
     now = dynamics.State(s.q, s.omega, s.delta, s.speed, s.spin, s.work)
     outside = _outside(p, s, t)
     a = dynamics.axes(p.true_array, s.delta)
-    wheel = p.true_array.wheels.inertia  # type: ignore[union-attr]
+    wheel = p.true_array.flywheels.inertia
     if p.units.drive == "rate":
         end = dynamics.rate_driven(plant, now, moved.rate, acceleration, outside, dt)
         after = dynamics.axes(p.true_array, end.delta)
@@ -180,10 +180,10 @@ def advanced(s: RunState, p: Parameters) -> dict[str, Any]:
     found = {"previous": s.rates}
     array = spun(p.true_array, s)
     given = array.jacobian(s.delta) @ s.rates
-    given = given + array.wheel_axes(s.delta) @ (array.wheels.inertia * s.spin_rate)  # type: ignore[union-attr]
+    given = given + array.wheel_axes(s.delta) @ (array.flywheels.inertia * s.spin_rate)
     if p.spacecraft is None:
         found |= {"delta": s.delta + p.dt * s.rates, "spin": s.spin + p.dt * s.spin_rate}
-        end = array.altered(h0=array.wheels.inertia * found["spin"]).momentum(found["delta"])  # type: ignore[union-attr]
+        end = array.altered(h0=array.flywheels.inertia * found["spin"]).momentum(found["delta"])
         return found | {"impulse": s.impulse + end - array.momentum(s.delta)}
     end = s.moved
     return found | {

@@ -153,7 +153,7 @@ class _Run:
     def _momentum(self, p: Parameters) -> Any:
         array = p.true_array
         if p.wheel_speed is not None:
-            array = array.altered(h0=array.wheels.inertia * p.wheel_speed)  # type: ignore[union-attr]
+            array = array.altered(h0=array.flywheels.inertia * p.wheel_speed)
         return array.momentum(p.delta)
 
     def command(self, k: Any, row: Any, s: RunState, p: Parameters) -> RunState:

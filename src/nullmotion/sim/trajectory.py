@@ -96,8 +96,7 @@ class Trajectory:
     def _wheel_momentum(self, directions: np.ndarray, speed: np.ndarray) -> np.ndarray:
         """Return the sum of I_W Omega times directions of each CMG, (N+1, m)."""
         array = self.setup.true_array
-        assert array.wheels is not None
-        total = np.einsum("kmn,kn->km", directions, array.wheels.inertia * speed)
+        total = np.einsum("kmn,kn->km", directions, array.flywheels.inertia * speed)
         found: np.ndarray = total + array.torque_axes @ array.momentum_bias
         return found
 

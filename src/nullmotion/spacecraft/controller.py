@@ -68,6 +68,8 @@ class Controller:
         aliases: Other names.
         citation: Where it comes from.
         follows_profile: Whether it uses the reference's rate and acceleration.
+        learns_inertia: Whether it finds the inertia out while it flies: its feed-forward is
+            not exact from the start.
         knows_torque_matrix: Whether it estimates how VSCMGs act (`torque_matrix`).
     """
 
@@ -76,6 +78,7 @@ class Controller:
     aliases: ClassVar[tuple[str, ...]] = ()
     citation: ClassVar[str] = ""
     follows_profile: ClassVar[bool] = False
+    learns_inertia: ClassVar[bool] = False
     knows_torque_matrix: ClassVar[bool] = False
 
     def init(self, array: CmgArray | None = None) -> Any:

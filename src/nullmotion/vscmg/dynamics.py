@@ -50,7 +50,9 @@ class Plant(NamedTuple):
 
     def internal(self, a: Axes, rates: Any, speed: Any) -> Any:
         """Return what units and wheels hold by turning against the body [N m s], (3,)."""
-        return (self.array.wheels.inertia * speed) @ a.s + (self.units.gimbal_inertia * rates) @ a.g
+        return (self.array.flywheels.inertia * speed) @ a.s + (
+            self.units.gimbal_inertia * rates
+        ) @ a.g
 
     def body_rate(self, a: Axes, momentum: Any, rates: Any, speed: Any) -> Any:
         """Return omega from H, gimbal rates and wheel speeds [rad/s], (3,)."""
@@ -59,19 +61,19 @@ class Plant(NamedTuple):
     def body_rate_of_momenta(self, a: Axes, momentum: Any, gimbal: Any, wheel: Any) -> Any:
         """Return omega from H, p_g and p_w [rad/s], (3,)."""
         u = self.units
-        held = outer_sum(u.spin_inertia - self.array.wheels.inertia, a.s)
+        held = outer_sum(u.spin_inertia - self.array.flywheels.inertia, a.s)
         matrix = self.rest + held + outer_sum(u.transverse_inertia, a.t)
         return linalg.solve(matrix, momentum - gimbal @ a.g - wheel @ a.s)
 
     def gimbal_torque(self, a: Axes, omega: Any, wheel: Any) -> Any:
-        """Return omega_t ((J_s - I - J_t) omega_s + p_w), the gyroscopic torque on gimbals [N m]."""
+        """Return omega_t ((J_s - I - J_t) omega_s + p_w), gyroscopic, on the gimbals [N m]."""
         u = self.units
-        sideways = u.spin_inertia - self.array.wheels.inertia - u.transverse_inertia
+        sideways = u.spin_inertia - self.array.flywheels.inertia - u.transverse_inertia
         return (a.t @ omega) * (sideways * (a.s @ omega) + wheel)
 
     def energy(self, a: Axes, omega: Any, rates: Any, speed: Any) -> Any:
         """Return the kinetic energy [J]."""
-        u, wheel = self.units, self.array.wheels.inertia
+        u, wheel = self.units, self.array.flywheels.inertia
         along, about = a.s @ omega, a.g @ omega + rates
         moving = (u.spin_inertia - wheel) @ (along * along) + wheel @ ((along + speed) ** 2)
         moving = moving + u.transverse_inertia @ (a.t @ omega) ** 2
@@ -93,8 +95,7 @@ def total_momentum(
         speed: Wheel speeds [rad/s], (k, n).
     """
     found = omega @ rest
-    u, wheels = units, array.wheels
-    assert wheels is not None
+    u, wheels = units, array.flywheels
     for i in range(array.n):
         s0, t0, g = array.spin_axes[i], array.transverse_axes[i], array.gimbal_axes[i]
         c, d = np.cos(delta[:, i])[:, None], np.sin(delta[:, i])[:, None]
@@ -202,7 +203,7 @@ def torque_driven(
         outside: Torque from outside in B, of the time since the start and the attitude.
         dt: Step [s].
     """
-    wheels, units = plant.array.wheels.inertia, plant.units
+    wheels, units = plant.array.flywheels.inertia, plant.units
     a = axes(plant.array, s.delta)
     total = in_N(s.q, plant.momentum(a, s.omega, s.rates, s.speed))
     gimbal = units.gimbal_inertia * (s.rates + a.g @ s.omega)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -14,10 +14,6 @@ from nullmotion.vscmg.unit_axes import axes, outer_sum
 
 Drive = Literal["rate", "torque"]
 Terms = Literal["all", "published"]
-
-
-def _number(value: float) -> Any:
-    return field(default_factory=lambda: np.array(value))
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,17 +44,17 @@ class Units:
         InputError: For signs and names that cannot be.
     """
 
-    spin_inertia: np.ndarray
-    transverse_inertia: np.ndarray
-    gimbal_inertia: np.ndarray
+    spin_inertia: Any
+    transverse_inertia: Any
+    gimbal_inertia: Any
     drive: Drive = "rate"
     terms: Terms = "all"
-    gimbal_torque_limit: np.ndarray = _number(np.inf)
-    gimbal_bandwidth: np.ndarray = _number(20.0)
-    gimbal_friction: np.ndarray = _number(0.0)
-    gimbal_drag: np.ndarray = _number(0.0)
-    wheel_friction: np.ndarray = _number(0.0)
-    wheel_drag: np.ndarray = _number(0.0)
+    gimbal_torque_limit: Any = np.inf
+    gimbal_bandwidth: Any = 20.0
+    gimbal_friction: Any = 0.0
+    gimbal_drag: Any = 0.0
+    wheel_friction: Any = 0.0
+    wheel_drag: Any = 0.0
     inertia_includes_units: bool = True
 
     def __post_init__(self) -> None:
@@ -85,8 +81,7 @@ class Units:
             InputError: Naming the key, the value and the bound.
         """
         if self.drive == "torque":
-            assert array.wheels is not None
-            for key, least in (("spin_inertia", array.wheels.inertia), ("gimbal_inertia", 0.0)):
+            for key, least in (("spin_inertia", array.flywheels.inertia), ("gimbal_inertia", 0.0)):
                 value = getattr(self, key)
                 if not np.all(value >= least) or not np.all(value > 0):
                     allowed = "above 0, and for spin at least the wheel's, for torque-driven units"
@@ -130,6 +125,6 @@ def torque_matrix(array: CmgArray, delta: Any, speed: Any) -> Any:
         delta: Gimbal angles [rad], (n,).
         speed: Wheel speeds Omega [rad/s], (n,).
     """
-    inertia = array.wheels.inertia  # type: ignore[union-attr]
+    inertia = array.flywheels.inertia
     wheel = array.wheel_axes(delta) * inertia
     return np.concatenate([wheel, array.transverse_directions(delta) * (inertia * speed)], axis=1)

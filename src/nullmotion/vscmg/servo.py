@@ -35,14 +35,14 @@ def torques(
         free: 1 for a unit whose motors work, 0 for one whose gimbal is held or wheel is dead.
         dt: Step [s]: the loop is no faster than one step.
     """
-    units, wheels = plant.units, plant.array.wheels
-    momentum = wheels.inertia * (s.speed + a.s @ s.omega)  # type: ignore[union-attr]
+    units, wheels = plant.units, plant.array.flywheels
+    momentum = wheels.inertia * (s.speed + a.s @ s.omega)
     loop = ops.minimum(units.gimbal_bandwidth, 1.0 / dt)
     gimbal = units.gimbal_inertia * loop * (rates - s.rates)
     gimbal = gimbal - plant.gimbal_torque(a, s.omega, momentum)
     gimbal = ops.clip(gimbal, -units.gimbal_torque_limit, units.gimbal_torque_limit)
-    wheel = wheels.inertia * (acceleration + s.rates * (a.t @ s.omega))  # type: ignore[union-attr]
-    most = wheels.greatest(s.speed)  # type: ignore[union-attr]
+    wheel = wheels.inertia * (acceleration + s.rates * (a.t @ s.omega))
+    most = wheels.greatest(s.speed)
     return Torques(gimbal, free * ops.clip(wheel, -most, most))
 
 
@@ -51,7 +51,7 @@ def with_friction(plant: Plant, s: State, motors: Torques, dt: Any) -> Torques:
 
     Coulomb friction, and viscous; over one step it stops a rotor at most.
     """
-    u, wheel = plant.units, plant.array.wheels.inertia  # type: ignore[union-attr]
+    u, wheel = plant.units, plant.array.flywheels.inertia
     gimbal = _drag(u.gimbal_friction, u.gimbal_drag, s.rates, u.gimbal_inertia / dt)
     spin = _drag(u.wheel_friction, u.wheel_drag, s.speed, wheel / dt)
     return Torques(motors.gimbal - gimbal, motors.wheel - spin)

@@ -64,6 +64,7 @@ class Adaptive(Controller):
         "Kim, Leve, Fitz-Coy & Dixon, J. Guid. Control Dyn. 35 (2012), Eqs 18-38"
     )
     follows_profile: ClassVar[bool] = True
+    learns_inertia: ClassVar[bool] = True
     knows_torque_matrix: ClassVar[bool] = True
 
     k: float = 0.05
