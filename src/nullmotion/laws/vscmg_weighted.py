@@ -14,6 +14,8 @@ from nullmotion.law import Claim, Law, Observation, check_parameters
 from nullmotion.vscmg.hardware import torque_matrix
 
 Goal = Literal["momentum", "equalise", "power", "none"]
+_NEAR = 0.05  # det(C_T C_T^T) below which symmetry may hide the way out
+_TURN = np.pi * (3.0 - np.sqrt(5.0))  # golden angle: no two gimbals are nudged alike
 _TINY = 1e-30  # (N m s)^2: an inverse stays finite where nothing turns and nothing can
 
 
@@ -60,6 +62,8 @@ class VscmgWeighted(Law):
             to their mean, ``power`` gives `power_W` to them (negative: takes it), ``none`` nothing.
         power_W: Power into the wheels [W].
         damping: Of the inverse in Eq 43, as above.
+        nudge: Null motion [rad/s] at a singular state, a different one for each gimbal: where
+            rotors are aligned, det has no slope and gamma shows no way out.
         as_published: Limits are left to the array.
     """
 
@@ -87,6 +91,7 @@ class VscmgWeighted(Law):
     goal: Goal = "momentum"
     power_W: float = 0.0
     damping: float = 1.0
+    nudge: float = 0.2
     as_published: bool = False
 
     def __post_init__(self) -> None:
@@ -95,7 +100,16 @@ class VscmgWeighted(Law):
             allowed = "'momentum', 'equalise', 'power' or 'none'"
             raise InputError("law.goal", self.goal, allowed)
         positive = ("W_Omega0", "W_delta", "k_d", "epsilon", "damping")
-        rest = ("lambda1", "lambda2", "gamma0", "k_gamma", "k_g", "k_m", "wheel_speed_rad_s")
+        rest = (
+            "lambda1",
+            "lambda2",
+            "gamma0",
+            "k_gamma",
+            "k_g",
+            "k_m",
+            "nudge",
+            "wheel_speed_rad_s",
+        )
         check_parameters(self, positive, rest)
 
     def supports(self, array: CmgArray) -> str:
@@ -168,7 +182,11 @@ class VscmgWeighted(Law):
         adjugate = linalg.adjugate(gram)
         slope = -2.0 * np.array([C_T[:, i] @ (adjugate @ C_W[:, i]) for i in range(C_T.shape[1])])
         gamma = self.gamma0 * ops.exp(-self.lambda2 * det)
-        return (_sech(self.k_g * det) * self.k_gamma * self.lambda2 * gamma) * slope
+        climb = (_sech(self.k_g * det) * self.k_gamma * self.lambda2 * gamma) * slope
+        if self.as_published:
+            return climb
+        near = ops.maximum(1.0 - det * (1.0 / _NEAR), 0.0)
+        return climb + (self.nudge * near * near) * np.cos(_TURN * np.arange(len(slope)))
 
     def _acceleration(self, array: CmgArray, obs: Observation, design: Any) -> Any:
         """Return the wheel accelerations that null motion aims at [rad/s^2], (n,)."""

@@ -16,10 +16,14 @@ _ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))  # of a symmetric 3 
 
 
 class Estimates(NamedTuple):
-    """What the controller has learned: theta_1 (6 + n) and theta_2 (2n), and whether it began."""
+    """What the controller has learned: theta_1 (6 + n), theta_2 (2n), the outside torque (3).
+
+    ``begun`` is 0 before the first sample, which has nothing to learn from, then 1.
+    """
 
     theta1: Any
     theta2: Any
+    torque: Any
     begun: Any
 
 
@@ -43,7 +47,8 @@ class Adaptive(Controller):
     J_s - J_t of each unit (J = const + sum (J_s - J_t) s s^T), theta_2 the gimbal inertias
     J_g and J_s - J_t again, as they act through the gimbal rates: -Y_2 theta_2 is
     the uncertain part of Q [wheel accelerations, gimbal rates], which the law is given. All
-    start from zero. While a limit cuts the command, nothing is learned.
+    start from zero. While a limit cuts the command, nothing is learned. Beyond the paper, a
+    constant torque from outside is learned too: its estimate d grows by Gamma3 r and is taken off.
 
     V = kp (e.e + (1 - e0)^2) + r.J r / 2 + theta~.Gamma^-1 theta~ / 2 falls at least as
     alpha kp e.e + k r.r (Eq 50), if nothing is cut and the units' acceleration torque is small.
@@ -54,6 +59,7 @@ class Adaptive(Controller):
         kp: Gain of e [N m]; the paper has 1.
         Gamma1: Adaptation gain of theta_1; 0 learns nothing.
         Gamma2: Of theta_2.
+        Gamma3: Of the outside torque [1/s]; the paper has none.
         inertia_bound: Greatest entry of theta_1 in size [kg m^2].
         unit_inertia_bound: Greatest entry of theta_2.
     """
@@ -72,21 +78,22 @@ class Adaptive(Controller):
     kp: float = 1.0
     Gamma1: float = 0.01
     Gamma2: float = 0.01
+    Gamma3: float = 0.0
     inertia_bound: float = 1e3
     unit_inertia_bound: float = 1e2
 
     def __post_init__(self) -> None:
         """Check the gains."""
         positive = ("k", "alpha", "kp", "inertia_bound", "unit_inertia_bound")
-        check_parameters(self, positive, ("Gamma1", "Gamma2"), kind="controller")
+        check_parameters(self, positive, ("Gamma1", "Gamma2", "Gamma3"), kind="controller")
 
     def init(self, array: CmgArray | None = None) -> Estimates:
         """Return zero knowledge."""
         n = 0 if array is None else array.n
-        return Estimates(np.zeros(6 + n), np.zeros(2 * n), 0.0)
+        return Estimates(np.zeros(6 + n), np.zeros(2 * n), np.zeros(3), 0.0)
 
     def step(self, obs: AttitudeObservation, state: Estimates) -> tuple[Any, Estimates]:
-        """Return the torque on the vehicle -(Y_1 theta_1 + k r + kp e), and what was learned."""
+        """Return the torque on the vehicle -(Y_1 theta_1 + k r + kp e + d), and what was learned."""
         errors = self._errors(obs)
         Y1 = self._regressor(obs, errors)
         on = obs.period * state.begun * (1.0 - obs.limited)
@@ -98,8 +105,9 @@ class Adaptive(Controller):
             Y2 = -np.concatenate([own, inertial], axis=1) * rates
             moved = theta2 + on * self.Gamma2 * (Y2.T @ errors.r)
             theta2 = _within(moved, self.unit_inertia_bound)
-        torque = -(Y1 @ theta1) - self.k * errors.r - self.kp * errors.e
-        return torque, Estimates(theta1, theta2, 1.0)
+        outside = state.torque + on * self.Gamma3 * errors.r
+        torque = -(Y1 @ theta1) - self.k * errors.r - self.kp * errors.e - outside
+        return torque, Estimates(theta1, theta2, outside, 1.0)
 
     def torque_matrix(self, obs: AttitudeObservation, state: Estimates) -> Any:
         """Return Q with the estimates: the wheels' columns are known, the gimbals' are not."""
