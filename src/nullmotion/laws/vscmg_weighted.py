@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Literal, NamedTuple
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -12,18 +12,12 @@ from nullmotion.array.model import CmgArray
 from nullmotion.errors import InputError
 from nullmotion.law import Claim, Law, Observation, check_parameters
 from nullmotion.vscmg.hardware import torque_matrix
+from nullmotion.vscmg.weighted import Command, Weighted
 
 Goal = Literal["momentum", "equalise", "power", "none"]
+_STILL = 1e-30  # (N m s)^2
 _NEAR = 0.05  # det(C_T C_T^T) below which symmetry may hide the way out
 _TURN = np.pi * (3.0 - np.sqrt(5.0))  # golden angle: no two gimbals are nudged alike
-_TINY = 1e-30  # (N m s)^2: an inverse stays finite where nothing turns and nothing can
-
-
-class _Command(NamedTuple):
-    """Wheel accelerations and gimbal rates, a pair of vectors (n,)."""
-
-    wheel: Any
-    gimbal: Any
 
 
 @dataclass(frozen=True)
@@ -100,17 +94,8 @@ class VscmgWeighted(Law):
             allowed = "'momentum', 'equalise', 'power' or 'none'"
             raise InputError("law.goal", self.goal, allowed)
         positive = ("W_Omega0", "W_delta", "k_d", "epsilon", "damping")
-        rest = (
-            "lambda1",
-            "lambda2",
-            "gamma0",
-            "k_gamma",
-            "k_g",
-            "k_m",
-            "nudge",
-            "wheel_speed_rad_s",
-        )
-        check_parameters(self, positive, rest)
+        gains = ("lambda1", "lambda2", "gamma0", "k_gamma", "k_g", "k_m")
+        check_parameters(self, positive, (*gains, "nudge", "wheel_speed_rad_s"))
 
     def supports(self, array: CmgArray) -> str:
         """Ask for flywheels whose speed may change."""
@@ -128,54 +113,24 @@ class VscmgWeighted(Law):
         Q = obs.torque_matrix
         if Q is None:
             Q = torque_matrix(array, obs.delta, obs.wheel_speed)
-        C_T = array.transverse_directions(obs.delta)
-        C_W = array.wheel_axes(obs.delta)
+        C_T, C_W = array.transverse_directions(obs.delta), array.wheel_axes(obs.delta)
         gram = C_T @ C_T.T
         det = ops.maximum(linalg.det(gram), 0.0)
         alive = ops.where(ops.less(0.0, wheels.torque_limit), 1.0, 0.0)
-        W = _Command(self.W_Omega0 * ops.exp(-self.lambda1 * det) * alive, np.full(n, self.W_delta))
-        halves = Q[:, :n], Q[:, n:]
-        wanted = self._ranged(halves, W, obs.hdot)
+        weights = self.W_Omega0 * ops.exp(-self.lambda1 * det) * alive
+        split = Weighted(Q[:, :n], Q[:, n:], Command(weights, np.full(n, self.W_delta)))
         low, high = self._bounds(array, obs)
-        share = 1.0 if self.as_published else _share(wanted, low, high)
-        wanted = _Command(share * wanted.wheel, share * wanted.gimbal)
-        climb = self._climb(C_T, C_W, gram, det)
-        goal = alive * self._acceleration(array, obs, state)
-        s_w = _sech(1.0 / (self.k_d * det + self.epsilon))
-        null = self._null(halves, W, wanted, goal, climb, self.damping / (s_w * s_w))
-        left = 1.0
+        command = split.ranged(obs.hdot)
         if not self.as_published:
-            rest = [b - w for b, w in zip(low, wanted, strict=True)]
-            room = [b - w for b, w in zip(high, wanted, strict=True)]
-            left = _share(null, _Command(*rest), _Command(*room))
-        rates = wanted.gimbal + left * null.gimbal
-        return (rates, wanted.wheel + left * null.wheel), state
-
-    def _ranged(self, halves: tuple[Any, Any], W: _Command, torque: Any) -> _Command:
-        """Return Q_W^+ torque, damped to rounding where Q has lost rank."""
-        Q1, Q2 = halves
-        M = (Q1 * W.wheel) @ Q1.T + (Q2 * W.gimbal) @ Q2.T
-        y = linalg.solve(_regular(M), torque)
-        return _Command(W.wheel * (Q1.T @ y), W.gimbal * (Q2.T @ y))
-
-    def _null(
-        self,
-        halves: tuple[Any, Any],
-        W: _Command,
-        wanted: _Command,
-        goal: Any,
-        climb: Any,
-        damping: Any,
-    ) -> _Command:
-        """Return N [v; climb] with v so that the wheels' part is goal - wanted (Eqs 42, 43)."""
-        Q1, Q2 = halves
-        wheel_part, gimbal_part = (Q1 * W.wheel) @ Q1.T, (Q2 * W.gimbal) @ Q2.T
-        beside = self._ranged(halves, W, Q2 @ climb)
-        v = goal - wanted.wheel + beside.wheel
-        G = gimbal_part + damping * wheel_part
-        v = v + W.wheel * (Q1.T @ linalg.solve(_regular(G), Q1 @ v))
-        used = self._ranged(halves, W, Q1 @ v)
-        return _Command(v - used.wheel - beside.wheel, climb - used.gimbal - beside.gimbal)
+            command = command.scaled(command.share_within(low, high))
+        goal = alive * self._acceleration(array, obs, state) - command.wheel
+        s_w = _sech(1.0 / (self.k_d * det + self.epsilon))
+        turn = self._climb(C_T, C_W, gram, det)
+        null = split.null(goal, turn, self.damping / (s_w * s_w))
+        if not self.as_published:
+            null = null.scaled(null.share_within(low.plus(command, -1.0), high.plus(command, -1.0)))
+        whole = command.plus(null)
+        return (whole.gimbal, whole.wheel), state
 
     def _climb(self, C_T: Any, C_W: Any, gram: Any, det: Any) -> Any:
         """Return -s_g k_gamma d gamma / d delta: the way out of a singularity, (n,)."""
@@ -199,33 +154,12 @@ class VscmgWeighted(Law):
             return gain * (sum(speed) * (1.0 / array.n) - speed)
         if self.goal == "power":
             h = inertia * speed
-            return (self.power_W / ops.maximum(h @ h, _TINY)) * h
+            return (self.power_W / ops.maximum(h @ h, _STILL)) * h
         return 0.0 * speed
 
-    def _bounds(self, array: CmgArray, obs: Observation) -> tuple[_Command, _Command]:
+    def _bounds(self, array: CmgArray, obs: Observation) -> tuple[Command, Command]:
         low, high = array.flywheels.bounds(obs.wheel_speed, obs.period)
-        return _Command(low, -array.rate_limit), _Command(high, array.rate_limit)
-
-
-def _share(command: _Command, low: _Command, high: _Command) -> Any:
-    """Return the largest factor up to 1 that keeps a command within bounds about 0."""
-    share: Any = 1.0
-    for value, least, most in zip(command, low, high, strict=True):
-        for i in range(len(value)):
-            bound = ops.where(ops.less(value[i], 0.0), -least[i], most[i])
-            size = ops.absolute(value[i])
-            over = ops.less(ops.maximum(bound, 0.0), size)
-            share = ops.minimum(
-                share, ops.where(over, ops.maximum(bound, 0.0) / (size + _TINY), 1.0)
-            )
-    return share
-
-
-def _regular(M: Any) -> Any:
-    """Return a symmetric matrix and what keeps its inverse finite: 1e-12 of its mean."""
-    m = M.shape[0]
-    mean = sum(M[i, i] for i in range(m)) * (1.0 / m)
-    return M + (1e-12 * mean + _TINY) * np.eye(m)
+        return Command(low, -array.rate_limit), Command(high, array.rate_limit)
 
 
 def _sech(x: Any) -> Any:
