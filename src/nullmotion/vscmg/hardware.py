@@ -80,11 +80,15 @@ class Units:
         Raises:
             InputError: Naming the key, the value and the bound.
         """
+        wheel = array.flywheels.inertia
+        if np.any(self.spin_inertia > 0) and not np.all(self.spin_inertia >= wheel):
+            allowed = f"from the wheel's own, {wheel.tolist()} kg m^2"
+            raise InputError("vscmg.spin_inertia", self.spin_inertia.tolist(), allowed)
         if self.drive == "torque":
-            for key, least in (("spin_inertia", array.flywheels.inertia), ("gimbal_inertia", 0.0)):
+            for key in ("spin_inertia", "gimbal_inertia"):
                 value = getattr(self, key)
-                if not np.all(value >= least) or not np.all(value > 0):
-                    allowed = "above 0, and for spin at least the wheel's, for torque-driven units"
+                if not np.all(value > 0):
+                    allowed = "above 0 for torque-driven units"
                     raise InputError(f"vscmg.{key}", value.tolist(), allowed)
         rest = np.linalg.eigvalsh(rest_inertia(array, self, inertia, delta))
         if not rest[0] > 0:
