@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numpy as np
-
+from nullmotion import ops
 from nullmotion.array.model import CmgArray
 
 
@@ -19,7 +18,7 @@ class Axes(NamedTuple):
 
 def axes(array: CmgArray, delta: Any) -> Axes:
     """Return the units' axes in B at gimbal angles [rad]."""
-    c, d = np.cos(delta)[:, None], np.sin(delta)[:, None]
+    c, d = ops.cos(delta)[:, None], ops.sin(delta)[:, None]
     s0, t0 = array.spin_axes, array.transverse_axes
     return Axes(c * s0 + d * t0, c * t0 - d * s0, array.gimbal_axes)
 

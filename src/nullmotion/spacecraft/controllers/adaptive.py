@@ -144,7 +144,7 @@ class Adaptive(Controller):
 def _axes(obs: AttitudeObservation) -> tuple[Any, Any]:
     """Return s and t of each unit in B, (n, 3) each."""
     array, delta = obs.array, obs.delta
-    c, d = np.cos(delta)[:, None], np.sin(delta)[:, None]
+    c, d = ops.cos(delta)[:, None], ops.sin(delta)[:, None]
     s0, t0 = array.spin_axes, array.transverse_axes
     return c * s0 + d * t0, c * t0 - d * s0
 
