@@ -20,6 +20,7 @@ import numpy as np
 
 from nullmotion.array.model import CmgArray
 from nullmotion.errors import InputError
+from nullmotion.singular_kind import TOLERANCE, Kind, kind
 
 _GRID = {1: 1, 2: 360, 3: 1200}  # directions; 4 deg apart on the half sphere
 _STARTS = 10  # least local minima of the grid that are polished
@@ -63,7 +64,7 @@ def measures(array: CmgArray, delta: Any) -> dict[str, Any]:
     Raises:
         InputError: For angles of another number of CMGs, or angles that are not finite.
     """
-    angles = _checked(array, delta)
+    angles = checked_angles(array, delta)
     sigma = np.linalg.svd(array.unit_jacobian(angles), compute_uv=False)
     if array.n < array.m:
         sigma = np.concatenate([sigma, np.zeros((*sigma.shape[:-1], array.m - array.n))], axis=-1)
@@ -76,6 +77,43 @@ def measures(array: CmgArray, delta: Any) -> dict[str, Any]:
     }
 
 
+def classify(array: CmgArray, delta: Any, tolerance: float = TOLERANCE) -> Any:
+    """Return what null motion can do at gimbal angles.
+
+    - ``regular``: not singular.
+    - ``saturation``: no gimbal angles at all have more momentum along u.
+    - ``elliptic``: no null motion; the angles are isolated among those of their momentum.
+    - ``hyperbolic``: null motion leads out of the singular set.
+    - ``degenerate-hyperbolic``: there is null motion, but close by all of it stays singular
+      (looked at up to 0.1 rad away).
+
+    Args:
+        array: The array.
+        delta: Gimbal angles [rad], (..., n).
+        tolerance: A / mean momentum with sigma_min up to this is singular, and eigenvalues of
+            Q / mean momentum up to this are zero. Angles that are singular when rounded
+            to a millionth of a rad are thus singular.
+
+    Returns:
+        A string (`nullmotion.singular_kind.Kind`), or an array of them over the leading axes.
+
+    Raises:
+        InputError: For angles of another number of CMGs, or angles that are not finite, and for
+            a tolerance that is not above 0 and below 1.
+    """
+    if not 0 < tolerance < 1:
+        raise InputError("tolerance", tolerance, "above 0, below 1")
+    angles = checked_angles(array, delta)
+    if angles.ndim == 1:
+        return kind(array, angles, tolerance)
+    rows = angles.reshape(-1, array.n)
+    found = np.full(len(rows), Kind.REGULAR, dtype=object)
+    sigma = np.linalg.svd(array.unit_jacobian(rows), compute_uv=False)
+    for k in np.flatnonzero(np.sum(sigma > tolerance, axis=1) < array.m):
+        found[k] = kind(array, rows[k], tolerance)
+    return found.reshape(angles.shape[:-1])
+
+
 def nearest(array: CmgArray, delta: Any) -> Nearest:
     """Return the singular configuration nearest to gimbal angles (..., n) [rad].
 
@@ -86,7 +124,7 @@ def nearest(array: CmgArray, delta: Any) -> Nearest:
     Raises:
         InputError: For angles of another number of CMGs, or angles that are not finite.
     """
-    angles = _checked(array, delta)
+    angles = checked_angles(array, delta)
     table, batch = angles.reshape(-1, array.n), angles.shape[:-1]
     distance, u = _search(array, table)
     offset = _offsets(*_frames(array, table), u[:, None])[0][:, 0]
@@ -94,9 +132,14 @@ def nearest(array: CmgArray, delta: Any) -> Nearest:
     return Nearest(found, angles - offset.reshape(angles.shape), u.reshape(*batch, array.m))
 
 
-def _checked(array: CmgArray, delta: Any) -> np.ndarray:
+def checked_angles(array: CmgArray, delta: Any, single: bool = False) -> np.ndarray:
+    """Return gimbal angles (..., n) as floats; with ``single`` they have no leading axes.
+
+    Raises:
+        InputError: For another number of CMGs, and angles that are not finite.
+    """
     angles = np.asarray(delta, float)
-    if angles.ndim == 0 or angles.shape[-1] != array.n:
+    if angles.ndim == 0 or angles.shape[-1] != array.n or (single and angles.ndim > 1):
         raise InputError("delta", angles.tolist(), f"{array.n} gimbal angles (rad)")
     if not np.isfinite(angles).all():
         raise InputError("delta", angles.tolist(), "finite gimbal angles (rad)")
@@ -215,7 +258,7 @@ def _newton_step(
     """
     offset, q, p = _offsets(spin, torque, u)
     d = -offset
-    basis = _tangents(u)  # (B, k, m, m - 1)
+    basis = tangents(u)  # (B, k, m, m - 1)
     a, h = torque[:, None] @ basis, spin[:, None] @ basis  # (B, k, n, m - 1)
     rho2 = (p * p + q * q)[..., None]
     along = (q[..., None] * a - p[..., None] * h) / rho2
@@ -231,8 +274,10 @@ def _newton_step(
     return (basis @ move)[..., 0]
 
 
-def _tangents(u: np.ndarray) -> np.ndarray:
+def tangents(u: np.ndarray) -> np.ndarray:
     """Return an orthonormal basis of the plane normal to u as columns, (..., m, m - 1)."""
+    if u.shape[-1] == 1:
+        return np.zeros((*u.shape, 0))
     if u.shape[-1] == 2:
         return np.stack([-u[..., 1], u[..., 0]], axis=-1)[..., None]
     least = np.eye(3)[np.argmin(np.abs(u), axis=-1)]

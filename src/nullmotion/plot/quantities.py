@@ -20,6 +20,11 @@ def axis_names(run: Run) -> list[str]:
     basis = getattr(run.setup.array, "torque_axes", None)
     if basis is None or len(basis) != run.hdot.shape[1]:
         return [f"axis {i + 1}" for i in range(run.hdot.shape[1])]
+    return basis_names(basis)
+
+
+def basis_names(basis: Any) -> list[str]:
+    """Return a name for each row of torque axes: x, y, z where they are body axes."""
     return [_axis_name(np.asarray(row, float), i) for i, row in enumerate(basis)]
 
 

@@ -7,11 +7,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from nullmotion.plot.atlas_runs import case_scene
 from nullmotion.plot.events import told
 from nullmotion.plot.overlays import angle_panels, overlays
 from nullmotion.plot.varied import varied_panels
 from nullmotion.plot.view import Case, Panel
 from nullmotion.report import page
+from nullmotion.report.atlas import Atlas
 from nullmotion.report.charts import Charts, grid, shared_legend
 from nullmotion.report.markup import Markup, tag
 from nullmotion.report.requirements import compared_table
@@ -45,6 +47,7 @@ def compare_report(comparison: Any, path: str | Path, title: str, scenario_text:
     together = [] if varied else overlays(cases)
     multiples = [] if varied else angle_panels(cases)[:MOST_MULTIPLES]
     charts = Charts.for_curves(sum(len(p.curves) for p in (*varied, *together, *multiples)))
+    atlas = Atlas(None if varied else case_scene(cases), begin_at_end=True)
     parts = [headline(cases, title)]
     if varied:
         key = comparison.varied
@@ -60,6 +63,7 @@ def compare_report(comparison: Any, path: str | Path, title: str, scenario_text:
         parts += [page.section("Requirements", kept, id="requirements")] if kept else []
     if together:
         parts.append(curves(charts, together, "Over time", "time", page.toolbar()))
+        parts.append(atlas.section())
     if multiples:
         drawn = [charts.add(panel, "time", "angles", small=True) for panel in multiples]
         parts.append(
@@ -69,7 +73,8 @@ def compare_report(comparison: Any, path: str | Path, title: str, scenario_text:
     if scenario_text:
         parts.append(page.scenario(scenario_text))
     ran = [case.trajectory for case in cases if case.trajectory is not None]
-    return page.write(path, page.document(title, parts, charts, page.versions(*ran)))
+    made = page.document(title, parts, charts, page.versions(*ran), *atlas.extras())
+    return page.write(path, made)
 
 
 def curves(

@@ -20,7 +20,14 @@ from nullmotion.report.charts import Charts
 from nullmotion.report.markup import Markup, join, tag, text
 
 
-def document(title: str, parts: Sequence[Markup], charts: Charts, footer: Markup) -> str:
+def document(
+    title: str,
+    parts: Sequence[Markup],
+    charts: Charts,
+    footer: Markup,
+    style: str = "",
+    script: str = "",
+) -> str:
     """Return the page as one string.
 
     Args:
@@ -28,13 +35,16 @@ def document(title: str, parts: Sequence[Markup], charts: Charts, footer: Markup
         parts: Sections of the page, in order.
         charts: The charts that the sections placed.
         footer: Last lines.
+        style: Further style sheet.
+        script: Further data and script elements; they run before the charts are drawn.
     """
     drawn = bool(charts.figures)
     return Template(_asset("page.html")).substitute(
         title=text(title),
-        style=_asset("page.css"),
+        style=_asset("page.css") + style,
         body=join(*parts),
         footer=footer,
+        more=script,
         data=charts.script() if drawn else "",
         plotly=f"<script>{_plotly()}</script>" if drawn else "",
         script=f"<script>{_asset('charts.js')}</script>" if drawn else "",

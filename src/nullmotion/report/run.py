@@ -7,11 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from nullmotion import rotation
+from nullmotion.plot.atlas_runs import run_scene
 from nullmotion.plot.events import told
 from nullmotion.plot.panels import run_panels
 from nullmotion.plot.quantities import of_attitude
 from nullmotion.plot.view import Run
 from nullmotion.report import page
+from nullmotion.report.atlas import Atlas
 from nullmotion.report.attitude_tiles import attitude_tiles
 from nullmotion.report.charts import Charts, grid
 from nullmotion.report.findings import findings
@@ -48,6 +50,7 @@ def run_report(
     attitude = of_attitude(trajectory)
     tiles = attitude_tiles(trajectory) if attitude else run_tiles(trajectory)
     kept = requirement_table(requirements) if requirements else None
+    atlas = Atlas(run_scene(trajectory), begin_at_end=True)
     parts = [
         headline(trajectory, title, requirements),
         page.section("Key numbers", row(tiles), id="numbers"),
@@ -55,13 +58,15 @@ def run_report(
         page.section(
             "Over time", page.toolbar(), grid(drawn), thinning(charts), id="charts-section"
         ),
+        atlas.section(),
         page.section(
             "Metrics", tag("div", metric_table(trajectory.metrics), class_="metrics"), id="metrics"
         ),
     ]
     if scenario_text:
         parts.append(page.scenario(scenario_text))
-    return page.write(path, page.document(title, parts, charts, page.versions(trajectory)))
+    made = page.document(title, parts, charts, page.versions(trajectory), *atlas.extras())
+    return page.write(path, made)
 
 
 def headline(run: Run, title: str, requirements: Results = ()) -> Markup:

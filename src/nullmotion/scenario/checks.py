@@ -18,6 +18,7 @@ from nullmotion.scenario import (
 )
 from nullmotion.scenario.construction import add_construction
 from nullmotion.scenario.scenario import Scenario
+from nullmotion.scenario.schema import ArraySection
 from nullmotion.scenario.toml import Path
 from nullmotion.scenario.validate import Validator
 
@@ -27,7 +28,7 @@ MOST_STEPS = 2**31
 
 def check(scenario: Scenario, validator: Validator) -> None:
     """Add to the validator what does not fit together."""
-    array = _check_array(scenario, validator)
+    array = check_array(scenario.array, validator)
     if array is not None:
         _check_start(scenario, array, validator)
         mission_checks.check(scenario, array, validator)
@@ -57,8 +58,8 @@ def _cases(scenario: Scenario) -> list[tuple[Path, Any]]:
     return [(("compare", "case", i), case) for i, case in enumerate(scenario.cases)]
 
 
-def _check_array(scenario: Scenario, v: Validator) -> CmgArray | None:
-    section = scenario.array
+def check_array(section: ArraySection, v: Validator) -> CmgArray | None:
+    """Return the array of a section; None after adding to the validator what is wrong with it."""
     wheels = [k for k in ("wheel_inertia_kg_m2", "wheel_speed_rpm") if section.given(k)]
     if wheels and section.given("h0_Nms"):
         v.add(
@@ -85,11 +86,10 @@ def _check_array(scenario: Scenario, v: Validator) -> CmgArray | None:
             "one number or one for each wheel",
         )
         return None
-    return _check_failures(scenario, whole, v)
+    return _check_failures(section, whole, v)
 
 
-def _check_failures(scenario: Scenario, whole: CmgArray, v: Validator) -> CmgArray | None:
-    section = scenario.array
+def _check_failures(section: ArraySection, whole: CmgArray, v: Validator) -> CmgArray | None:
     frozen = section.frozen_at_deg
     if isinstance(frozen, tuple) and len(frozen) != len(set(section.failed_cmgs)):
         v.add(

@@ -81,6 +81,10 @@ class Validator:
         found["stop"] = self._stop(data)
         return found
 
+    def section(self, name: str) -> Any:
+        """Return one checked section of the document, None if it has problems."""
+        return self._section((name,))
+
     def _fit_to_mission(self, data: Mapping[str, Any]) -> None:
         """Note sections that the kind of mission needs, or has no use for."""
         mission = data.get("mission")

@@ -167,12 +167,12 @@
   const slider = document.getElementById("cursor");
   const clock = document.getElementById("cursor-time");
   let wanted = null;
-  function moveCursor(chart, t) {
+  function moveCursor(chart, t, quiet = false) {
     const idle = wanted === null;
-    wanted = [chart, t];
+    wanted = [chart, t, quiet];
     if (!idle) return;
     requestAnimationFrame(() => {
-      const [where, time] = wanted;
+      const [where, time, heard] = wanted;
       wanted = null;
       for (const c of group(where)) place(c, time);
       placeCommon(where, time);
@@ -182,6 +182,8 @@
         clock.textContent = `${tidy(time)} s`;
         slider.setAttribute("aria-valuetext", clock.textContent);
       }
+      // The array in momentum space turns along; it does not hear what it said itself.
+      if (!heard && where.figure.group === "time") document.dispatchEvent(new CustomEvent("chart-time", { detail: time }));
     });
   }
 
@@ -265,6 +267,7 @@
       moveCursor(linked, from + (Number(slider.value) / 1000) * (to - from));
     });
     moveCursor(linked, whole(linked)[1]);
+    document.addEventListener("atlas-time", (event) => moveCursor(linked, event.detail, true));
   }
 
   // On paper a page is 700 px wide, whatever the window is.

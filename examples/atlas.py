@@ -1,0 +1,1 @@
+"""Where an array is singular, what it can rely on, and a page to turn it in."""

@@ -1,0 +1,95 @@
+"""Angles that hold a momentum: Newton's steps, and angles to start them from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from nullmotion.atlas.envelope_rings import Rings
+
+_SAMPLES = 100_000
+_KEPT = 0.5  # share of the samples that are kept, the most regular ones
+_NEAR = 24  # samples around a momentum
+_APART = 0.15  # sine of half the angle between two starts that are not the same
+_LEAST = 1e-9  # added to the eigenvalues of A A^T, in units of the mean momentum squared
+_STEP = 0.7  # largest step of a gimbal [rad]
+_CLIMB = 0.3  # length of a step of null motion towards regular angles [rad]
+_SEED = 20240531
+
+
+def solved(
+    rings: Rings, delta: np.ndarray, h: np.ndarray, steps: int = 6, climbing: int = 0
+) -> np.ndarray:
+    """Return angles (B, c) moved towards momenta (B, m) by Newton's steps of least norm.
+
+    The first ``climbing`` steps have null motion up the gradient of log det(A A^T) beside them.
+    """
+    spare = delta.shape[1] > rings.m
+    for k in range(steps):
+        part, column = rings.parts(delta)
+        gram = column.mT @ column + _LEAST * np.eye(rings.m)
+        inverse = np.linalg.inv(gram)
+        back = column @ inverse  # (B, c, m): A^+
+        step = (back @ (h - part.sum(axis=1))[..., None])[..., 0]
+        if spare and k < climbing:
+            gradient = -2 * np.sum(back * part, axis=2)
+            lost = (column.mT @ gradient[..., None])[..., 0]
+            null = gradient - (back @ lost[..., None])[..., 0]
+            size = np.linalg.norm(null, axis=1, keepdims=True)
+            step = step + null * np.minimum(_CLIMB, _CLIMB / np.maximum(size, 1e-12))
+        greatest = np.abs(step).max(axis=1, keepdims=True)
+        delta = delta + step * np.minimum(1.0, _STEP / np.maximum(greatest, 1e-12))
+    return delta
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """Random gimbal angles and their momenta.
+
+    Attributes:
+        delta: Angles of the circles, (S, c).
+        measure: det(A A^T) of each, (S,).
+        tree: Their momenta.
+    """
+
+    delta: np.ndarray
+    measure: np.ndarray
+    tree: cKDTree
+
+    def near(self, h: np.ndarray, count: int) -> np.ndarray:
+        """Return ``count`` angles around each momentum, (B, count, c): regular, and different."""
+        found = self.tree.query(h, _NEAR)[1]
+        angles, left = self.delta[found], self.measure[found]
+        rows, chosen = np.arange(len(h)), []
+        for _ in range(count):
+            best = left.argmax(axis=1)
+            chosen.append(angles[rows, best])
+            apart = np.abs(np.sin(0.5 * (angles - chosen[-1][:, None]))).max(axis=2)
+            left = np.where(apart < _APART, 1e-3 * left, left)
+            left[rows, best] = -1.0
+        return np.stack(chosen, axis=1)
+
+
+def sampled(rings: Rings) -> Samples:
+    """Return random angles, the less regular ones left out, with their mirror images."""
+    rng = np.random.default_rng(_SEED)
+    delta = rng.uniform(-np.pi, np.pi, (_SAMPLES, len(rings.ring_of)))
+    part, column = rings.parts(delta)
+    measure = np.linalg.det(column.mT @ column)
+    kept = np.argsort(-measure)[: int(_KEPT * _SAMPLES)]
+    delta, h, measure = delta[kept], part[kept].sum(axis=1), measure[kept]
+    tree = cKDTree(np.concatenate([h, -h]))
+    return Samples(np.concatenate([delta, delta + np.pi]), np.tile(measure, 2), tree)
+
+
+def unlike(angles: np.ndarray, score: np.ndarray, count: int) -> np.ndarray:
+    """Return the best of angles (B, T, c) by score (B, T) that are not the same, (B, count, c)."""
+    left, rows, chosen = score.copy(), np.arange(len(score)), []
+    for _ in range(min(count, score.shape[1])):
+        best = left.argmax(axis=1)
+        chosen.append(angles[rows, best])
+        apart = np.abs(np.sin(0.5 * (angles - chosen[-1][:, None]))).max(axis=2)
+        left = np.where(apart < 0.1 * _APART, -2.0, left)
+    return np.stack(chosen, axis=1)

@@ -1,0 +1,138 @@
+"""What pictures show of an array's singular surfaces: kinds, sheets, radii, motions.
+
+`nullmotion.report` makes a page of it, `nullmotion.plot.atlas` a figure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from nullmotion.array.model import CmgArray
+from nullmotion.atlas import Surface, patterns, surfaces
+from nullmotion.plot import palette
+
+MOST_POINTS = 40_000  # of all sheets together: a page turns them without a graphics card
+MOST_SHEETS = 128
+MOST_DIRECTIONS, LEAST_DIRECTIONS = 6000, 400
+PLANAR_DIRECTIONS = 720
+FEW_SHEETS = 40  # so many are switched on from the start
+
+
+@dataclass(frozen=True)
+class Ball:
+    """A radius of momentum space that is told by a name.
+
+    Args:
+        key: Short name, unique.
+        label: What it is.
+        radius: Its size [N m s].
+        colour: Hex colour.
+        dash: One of `palette.DASHES`.
+        shown: Whether it is drawn from the start.
+    """
+
+    key: str
+    label: str
+    radius: float
+    colour: str
+    dash: str
+    shown: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """How the gimbals turned.
+
+    Args:
+        label: What turned them.
+        t: Times [s], (k,).
+        delta: Gimbal angles [rad], (k, n).
+        momentum: Momentum along the torque axes [N m s], (k, m).
+        sigma: Least singular value of A over the mean momentum, (k,); None if not known.
+        colour: Hex colour.
+        dash: One of `palette.DASHES`.
+    """
+
+    label: str
+    t: np.ndarray
+    delta: np.ndarray
+    momentum: np.ndarray
+    sigma: Any = None
+    colour: str = palette.INK
+    dash: str = "solid"
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """An array, its singular surfaces and what is drawn among them.
+
+    Attributes:
+        array: The array.
+        home: Gimbal angles to begin with [rad], (n,).
+        sheets: Singular surfaces.
+        balls: Radii.
+        motions: Runs.
+        left_out: Sign patterns that are not among the sheets.
+    """
+
+    array: CmgArray
+    home: np.ndarray
+    sheets: tuple[Surface, ...]
+    balls: tuple[Ball, ...] = ()
+    motions: tuple[Motion, ...] = ()
+    left_out: int = 0
+
+    @property
+    def radius(self) -> float:
+        """Size of the picture: the largest momentum on a sheet or of a motion [N m s]."""
+        found = [np.linalg.norm(sheet.momentum, axis=1).max() for sheet in self.sheets]
+        paths = [np.linalg.norm(motion.momentum, axis=1) for motion in self.motions]
+        found += [np.nanmax(path) for path in paths if np.isfinite(path).any()]
+        return float(max(found, default=1.0)) or 1.0
+
+
+def scene(
+    array: CmgArray,
+    home: Any = None,
+    balls: Sequence[Ball] = (),
+    motions: Sequence[Motion] = (),
+    most: int = MOST_POINTS,
+) -> Scene:
+    """Return an array's singular surfaces, meshed as finely as a picture can show.
+
+    Args:
+        array: The array.
+        home: Gimbal angles to begin with [rad], (n,); zero by default.
+        balls: Radii to draw.
+        motions: Runs to draw.
+        most: Points of all sheets together.
+    """
+    every = minority(patterns(array), np.asarray(array.h0) > 0)
+    signs = every[:MOST_SHEETS]
+    count = int(np.clip(most // len(signs), LEAST_DIRECTIONS, MOST_DIRECTIONS))
+    count = PLANAR_DIRECTIONS if array.m < 3 else count
+    start = np.zeros(array.n) if home is None else np.asarray(home, float)
+    sheets = surfaces(array, count, signs)
+    return Scene(array, start, sheets, tuple(balls), tuple(motions), len(every) - len(signs))
+
+
+def minority(signs: np.ndarray, working: np.ndarray) -> np.ndarray:
+    """Return sign patterns turned so that less than half are -1, few of them first, (k, n).
+
+    (u, epsilon) and (-u, -epsilon) are the same point.
+    """
+    minus = np.sum((signs < 0) & working, axis=1)
+    flip = 2 * minus > working.sum()
+    turned = np.where(flip[:, None] & working, -signs, signs)
+    order = np.lexsort((*(turned.T[::-1]), np.sum(turned < 0, axis=1)))
+    found: np.ndarray = turned[order]
+    return found
+
+
+def sign_name(signs: np.ndarray) -> str:
+    """Return a sign pattern as text, a place for each CMG."""
+    return "".join("+" if sign > 0 else "−" for sign in signs)

@@ -1,0 +1,149 @@
+"""The data block of a page's atlas: numbers as base64 in one table."""
+
+from __future__ import annotations
+
+import base64
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from nullmotion.plot import palette
+from nullmotion.plot.atlas_looks import LOOKS, Look
+from nullmotion.plot.atlas_view import FEW_SHEETS, Motion, Scene, sign_name
+from nullmotion.plot.quantities import basis_names
+
+_FULL = 32767  # of a 16-bit number
+_MARGIN = 127
+MOST_BYTES = 450_000  # of all motions, before base64
+MOST_SAMPLES, LEAST_SAMPLES = 2000, 100  # of one motion
+
+
+class Coded:
+    """Collects arrays; equal ones are kept once."""
+
+    def __init__(self) -> None:
+        """Start without any."""
+        self.texts: list[str] = []
+        self._known: dict[bytes, int] = {}
+
+    def add(self, values: np.ndarray) -> int:
+        """Return the place of an array in the table."""
+        plain = np.ascontiguousarray(values)
+        raw = plain.dtype.str.encode() + plain.tobytes()
+        if raw not in self._known:
+            self._known[raw] = len(self.texts)
+            kind = plain.dtype.newbyteorder("<").str[1:]
+            coded = base64.b64encode(plain.astype(f"<{kind}", copy=False).tobytes()).decode()
+            self.texts.append(f"{kind}:{coded}")
+        return self._known[raw]
+
+
+def block(scene: Scene, begin_at_end: bool = False) -> dict[str, Any]:
+    """Return what the page's script draws.
+
+    Momentum is in body axes for three torque dimensions, along the torque axes for two.
+
+    Args:
+        scene: What is shown.
+        begin_at_end: Whether a run is first shown as it ended.
+    """
+    coded = Coded()
+    largest = max(float(np.abs(_drawn(scene, s.momentum)).max()) for s in scene.sheets) or 1.0
+    quantum = largest / _FULL
+    return {
+        "array": _array(scene),
+        "axis_names": basis_names(scene.array.torque_axes),
+        "radius": scene.radius,
+        "quantum": quantum,
+        "kinds": [_look(scene, look) for look in LOOKS],
+        "colours": list(palette.COLOURS),
+        "meshes": [_mesh(scene, coded)],
+        "sheets": [_sheet(scene, index, quantum, coded) for index in range(len(scene.sheets))],
+        "spheres": [asdict(ball) | {"angle": 150 + 20 * k} for k, ball in enumerate(scene.balls)],
+        "motions": [_motion(scene, motion, coded) for motion in scene.motions],
+        "begin_at_end": begin_at_end,
+        "arrays": coded.texts,
+    }
+
+
+def _look(scene: Scene, look: Look) -> dict[str, Any]:
+    """Return a type's look; what may lie behind much else is the thinner, the more there is."""
+    thinner = min(1.0, (8 / len(scene.sheets)) ** 0.5)
+    alpha = look.alpha if look.stripes else look.alpha * thinner
+    return asdict(look) | {"shown": True, "alpha": alpha, "rim": look.rim * thinner}
+
+
+def _drawn(scene: Scene, vectors: np.ndarray) -> np.ndarray:
+    """Return vectors along the torque axes as they are drawn: in B where there are three."""
+    basis = scene.array.torque_axes
+    assert basis is not None
+    return vectors @ basis if scene.array.m == 3 else vectors
+
+
+def _array(scene: Scene) -> dict[str, Any]:
+    array = scene.array
+    assert array.torque_axes is not None
+    return {
+        "label": array.label,
+        "names": [str(i + 1) for i in range(array.n)],
+        "gimbal_axes": array.gimbal_axes.tolist(),
+        "spin_axes": array.spin_axes.tolist(),
+        "transverse_axes": array.transverse_axes.tolist(),
+        "h0": np.asarray(array.h0, float).tolist(),
+        "mean": float(array.mean_momentum),
+        "bias": np.asarray(array.momentum_bias, float).tolist(),
+        "torque_axes": array.torque_axes.tolist(),
+        "home": scene.home.tolist(),
+    }
+
+
+def _mesh(scene: Scene, coded: Coded) -> dict[str, int]:
+    first = scene.sheets[0]
+    small = np.uint16 if len(first.u) < 65536 else np.uint32
+    u = np.rint(_drawn(scene, first.u) * _FULL).astype(np.int16)
+    return {"u": coded.add(u), "triangles": coded.add(first.cells.astype(small))}
+
+
+def _sheet(scene: Scene, index: int, quantum: float, coded: Coded) -> dict[str, Any]:
+    sheet = scene.sheets[index]
+    minus = int(np.sum(sheet.signs < 0))
+    h = np.rint(_drawn(scene, sheet.momentum) / quantum).astype(np.int16)
+    made = {
+        "signs": sheet.signs.astype(int).tolist(),
+        "name": sign_name(sheet.signs),
+        "minus": minus,
+        "mesh": 0,
+        "shown": len(scene.sheets) <= FEW_SHEETS or minus <= 1,
+        "h": coded.add(h),
+        "kind": coded.add(sheet.kind.astype(np.uint8)),
+    }
+    if scene.array.m == 3:
+        made["margin"] = coded.add(_margin(sheet.curvature))
+    return made
+
+
+def _margin(curvature: np.ndarray) -> np.ndarray:
+    """Return 1/K, which passes through zero where types part, squeezed into 8 bits."""
+    with np.errstate(divide="ignore"):
+        value = np.where(curvature == 0, np.inf, 1.0 / curvature)
+    usual = np.median(np.abs(value[np.isfinite(value)])) if np.isfinite(value).any() else 1.0
+    with np.errstate(invalid="ignore"):
+        squeezed = np.where(np.isfinite(value), value / (np.abs(value) + (usual or 1.0)), 1.0)
+    return np.rint(_MARGIN * squeezed).astype(np.int8)
+
+
+def _motion(scene: Scene, motion: Motion, coded: Coded) -> dict[str, Any]:
+    h = _drawn(scene, np.asarray(motion.momentum, float))
+    padded = np.zeros((len(h), 3))
+    padded[:, : h.shape[1]] = h
+    fits = MOST_BYTES // (4 * (5 + scene.array.n) * len(scene.motions))
+    most = min(len(h), int(np.clip(fits, LEAST_SAMPLES, MOST_SAMPLES)))
+    keep = np.unique(np.rint(np.linspace(0, len(h) - 1, most)).astype(int))
+    columns = {"t": motion.t, "delta": motion.delta, "h": padded, "sigma": motion.sigma}
+    made = {
+        key: coded.add(np.asarray(values, np.float32)[keep])
+        for key, values in columns.items()
+        if values is not None
+    }
+    return {"label": motion.label, "colour": motion.colour, "dash": motion.dash, **made}

@@ -1,0 +1,83 @@
+"""A file that describes an array: its ``[array]`` section alone, or a whole scenario."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import PurePath
+
+import numpy as np
+
+from nullmotion.array import CmgArray
+from nullmotion.scenario import keys, objects
+from nullmotion.scenario.checks import check_array
+from nullmotion.scenario.problems import MISSING
+from nullmotion.scenario.scenario import Scenario, checked
+from nullmotion.scenario.schema import About, ArraySection
+from nullmotion.scenario.sections import SECTIONS
+from nullmotion.scenario.source import Source
+from nullmotion.scenario.validate import Validator
+
+_ALONE = ("array", "scenario")
+_FLOWN = ("law", "mission", "simulation")  # any of them: it is meant as a whole scenario
+
+
+def _refused(name: str) -> str:
+    if name not in SECTIONS:
+        return keys.hint(name, SECTIONS).replace("key", "section", 1)
+    return "without [law], [mission] and [simulation] a file has [array] and [scenario] only"
+
+
+@dataclass(frozen=True)
+class ArrayFile:
+    """An array and where it comes from.
+
+    Attributes:
+        source: Text and values set over it.
+        section: The checked ``[array]``.
+        array: The array that works, without the failed CMGs.
+        title: Title that the file gives, or its name.
+        scenario: The whole scenario; None when the file has an array alone.
+    """
+
+    source: Source
+    section: ArraySection
+    array: CmgArray
+    title: str
+    scenario: Scenario | None = None
+
+    @property
+    def name(self) -> str:
+        """Short name: that of the file without its ending."""
+        return PurePath(self.source.name).stem or "array"
+
+    @property
+    def home(self) -> np.ndarray:
+        """Gimbal angles of the layout without momentum, zero for axes of one's own [rad], (n,)."""
+        return objects.start(self.section, None, self.array.n)
+
+
+def array_file(source: Source) -> ArrayFile:
+    """Return the array of a source.
+
+    Raises:
+        ScenarioError: With everything that is wrong.
+    """
+    if any(name in source.data for name in _FLOWN):
+        scenario = checked(source)
+        made = objects.array(scenario.array)
+        return ArrayFile(source, scenario.array, made, scenario.title, scenario)
+    validator = Validator(source)
+    for name in source.data:
+        if name not in _ALONE:
+            validator.add((name,), MISSING, _refused(name))
+    if "array" not in source.data:
+        validator.add(("array",), MISSING, "this section is missing")
+        validator.raise_problems()
+    section = validator.section("array")
+    about = validator.section("scenario") if "scenario" in source.data else About()
+    validator.raise_problems()
+    array = check_array(section, validator)
+    validator.raise_problems()
+    assert array is not None
+    title = about.title or PurePath(source.name).stem
+    return ArrayFile(source, section, array, title)
