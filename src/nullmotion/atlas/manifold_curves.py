@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from nullmotion.atlas.curvature import radii_terms
@@ -17,6 +15,7 @@ from nullmotion.singularity import tangents
 SINGULAR = 1e-5  # sigma_min of unit A below which a solution is treated as singular
 SAME = 1e-3  # rad; singular points closer than this are one
 _BESIDE = 0.02  # rad from a crossing, where its curves are apart
+_ALMOST = 1e-3  # sigma_min of unit A below which an end is a crossing, not where steps ran out
 _NEWTON = 8
 
 
@@ -33,7 +32,8 @@ def curves(
     _add(rotors, starts, momentum, found)
     while True:
         for curve in found:
-            ends = [] if curve.closed else [curve.angles[0], curve.angles[-1]]
+            ends = curve.angles[:0] if curve.closed else curve.angles[[0, -1]]
+            ends = ends[rotors.sigma_min(ends) < _ALMOST]
             _meet(rotors, ends, momentum, points)
         if looked == len(points):
             return found, np.reshape(points, (-1, rotors.n))
@@ -52,7 +52,7 @@ def _add(rotors: Rotors, starts: np.ndarray, momentum: np.ndarray, found: list[C
 
 
 def _meet(
-    rotors: Rotors, ends: Iterable[np.ndarray], momentum: np.ndarray, points: list[np.ndarray]
+    rotors: Rotors, ends: np.ndarray, momentum: np.ndarray, points: list[np.ndarray]
 ) -> None:
     """Add the singular points beside the ends of curves, those that are new."""
     for end in ends:
