@@ -104,12 +104,13 @@ def test_types_agree_with_the_curvature(array: nm.CmgArray, seed: int) -> None:
     rng = np.random.default_rng([seed, 1])  # not the numbers that the axes are made of
     u = rng.normal(size=(40, array.m))
     u /= np.linalg.norm(u, axis=1, keepdims=True)
-    signs = rng.choice([-1.0, 1.0], size=u.shape[:1] + (array.n,))
+    signs = rng.choice([-1.0, 1.0], size=(len(u), array.n))
     points = atlas.singular_points(array, u, signs)
     product = numeric_product(array, u, signs)
     K = atlas.gaussian_curvature(array, u, signs)
     scale = array.mean_momentum ** (array.m - 1)
-    assert 1.0 / K == pytest.approx(product, rel=1e-3, abs=1e-6 * scale)
+    radii = 1.0 / K
+    assert radii == pytest.approx(product, rel=1e-3, abs=1e-6 * scale)
     for delta, direction, sign, curvature in zip(points.delta, u, signs, product, strict=True):
         value = eigenvalues(array, delta, direction)
         if value is None or np.abs(value).min() < CLEAR or abs(curvature) < 1e-5 * scale:

@@ -168,9 +168,9 @@ def test_the_time_slider_turns_array_and_momentum(opened, atlas_file):
     rotors = drawing(page, "#atlas-array canvas")
     slider = page.locator("#atlas-time")
     slider.focus()
-    for _ in range(200):
+    for _ in range(100):
         page.keyboard.press("ArrowRight")
-    time = 0.2 * TIMES[-1]
+    time = 0.1 * TIMES[-1]
     assert numbers(told(page, "source"))[0] == pytest.approx(time)
     delta = np.array([np.interp(time, TIMES, column) for column in TURNED.T])
     np.testing.assert_allclose(numbers(told(page, "momentum")), ARRAY.momentum(delta), atol=1e-3)

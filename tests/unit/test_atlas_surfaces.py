@@ -58,7 +58,7 @@ def test_the_outer_sheet_is_where_the_momentum_along_u_is_largest(rng: np.random
     for u in rng.normal(size=(4, 3)):
         along = atlas.singular_points(array, u, np.ones(4)).momentum @ u
         found = max(
-            -minimize(lambda d: -array.momentum(d) @ u, start).fun
+            -minimize(lambda d, u=u: -array.momentum(d) @ u, start).fun
             for start in rng.uniform(-np.pi, np.pi, (8, 4))
         )
         assert along == pytest.approx(found, rel=1e-9)
@@ -152,7 +152,7 @@ def test_u_is_normal_to_the_surface() -> None:
         spread = product.max(axis=1) / product.min(axis=1)
         longest = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(axis=1)
         # away from edges and rims, and no slivers
-        plain = (0 < spread) & (spread < 1.1) & (size > 0.1 * longest**2)
+        plain = (spread > 0) & (spread < 1.1) & (size > 0.1 * longest**2)
         u = sheet.u[sheet.cells].mean(axis=1)
         cosine = np.einsum("tk,tk->t", normal, u)[plain] / size[plain]
         assert plain.mean() > 0.2

@@ -17,20 +17,22 @@ class Bounds:
         upper: Upper bound.
         at: Where the number is found, if that is a momentum [N m s], (m,): for a radius one that
             is not reachable, or has no room beyond it; for a greatest momentum one of that size.
-        basis: What each bound rests on.
+        estimate: Value between the bounds, where there is one.
+        basis: What the bounds rest on.
         seconds: Time it took [s].
     """
 
     lower: float
     upper: float
     at: np.ndarray | None = None
+    estimate: float | None = None
     basis: str = ""
     seconds: float = 0.0
 
     @property
-    def middle(self) -> float:
-        """Mean of both bounds."""
-        return 0.5 * (self.lower + self.upper)
+    def value(self) -> float:
+        """The estimate, or the mean of both bounds."""
+        return 0.5 * (self.lower + self.upper) if self.estimate is None else self.estimate
 
     @property
     def gap(self) -> float:

@@ -85,13 +85,20 @@ class Cells:
         near, far = self.box[:, -1, 0], self.box[:, -1, 1] / cosine
         return np.concatenate([near[:, None, None] * corner, far[:, None, None] * corner], axis=1)
 
-    def edges(self, hulls: np.ndarray) -> np.ndarray:
-        """Return the cells' mean edges, (B, m, m): along each s, then along r."""
+    def edges(self, hulls: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the cells' mean edges, along each s, then along r, (B, m, m), and their sag.
+
+        The sag is by how much the hull is thicker than the cell, because the patch is curved.
+        """
         m = self.box.shape[1]
         bits = np.array(list(product((-1, 1), repeat=m)))  # r first, as in `hulls`
         order = [*range(1, m), 0]
-        edges: np.ndarray = bits[:, order].T @ hulls / 2 ** (m - 1)
-        return edges
+        edges = bits[:, order].T @ hulls / 2 ** (m - 1)
+        thick = np.linalg.norm(edges[:, -1], axis=1)
+        share = (self.box[:, -1, 1] - self.box[:, -1, 0]) / np.maximum(thick, 1e-300)
+        across = edges[:, -1].copy()
+        edges[:, -1] *= np.minimum(share, 1.0)[:, None]
+        return edges, across - edges[:, -1]
 
     def halves(self, axis: np.ndarray) -> Cells:
         """Return both halves of each cell, cut along one axis each, (B,)."""

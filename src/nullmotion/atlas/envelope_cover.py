@@ -12,9 +12,11 @@ from nullmotion.atlas.envelope_cells import SEEDS, Cells
 from nullmotion.atlas.envelope_rings import Rings
 from nullmotion.atlas.envelope_search import Samples, sampled, solved, unlike
 
+_STARTS = 12  # of each kind for a momentum by itself
 _FRESH = 4  # starts from random samples
 _NEIGHBOURS = (0, 2, 5)  # proven cells near by whose angles are tried, by rank
 _HELD = 1e-9  # distance at which angles hold a momentum, in units of the mean momentum
+_MORE = 12  # of Newton's steps where they converge slowly
 _CLOSE = 0.01  # distance up to which angles are worth keeping
 _SLENDER = 16.0  # greatest ratio of a cell's edges
 
@@ -63,6 +65,14 @@ class Explorer:
         self._learn(attempt)
         return attempt.findings()
 
+    def starts(self, h: np.ndarray) -> np.ndarray:
+        """Return angles (B, S, c) from which to look for momenta (B, m)."""
+        found = self.samples.near(h, _STARTS)
+        if len(self.known[0]) < _STARTS:
+            return found
+        near = cKDTree(self.known[0]).query(h, _STARTS)[1]
+        return np.concatenate([found, self.known[1][near]], axis=1)
+
     def _ask_neighbours(self, attempt: _Attempt, climbing: int) -> None:
         left = np.flatnonzero(~attempt.inside)
         ranks = [r + 1 for r in _NEIGHBOURS]
@@ -98,7 +108,11 @@ class _Attempt:
         if len(left) == 0:
             return
         delta = solved(self.rings, start(left), self.centres[left], steps, climbing)  # type: ignore[operator]
-        miss = np.abs(self.rings.momentum(delta) - self.centres[left]).max(axis=1)
+        miss = self._miss(delta, left)
+        slow = np.flatnonzero((miss > _HELD) & (miss < _CLOSE))  # next to a fold
+        if len(slow):
+            delta[slow] = solved(self.rings, delta[slow], self.centres[left[slow]], _MORE)
+            miss[slow] = self._miss(delta[slow], left[slow])
         self.reached[left[miss < _HELD]] = True
         good, score = self._try(left, delta, False)
         if (self.rings.inner < self.rings.outer).any():
@@ -107,6 +121,10 @@ class _Attempt:
         self.inside[left[good]] = True
         self.reached[left[good]] = True
         self._keep(left, delta, np.where(miss < _CLOSE, score, 0.0))
+
+    def _miss(self, delta: np.ndarray, which: np.ndarray) -> np.ndarray:
+        miss: np.ndarray = np.abs(self.rings.momentum(delta) - self.centres[which]).max(axis=1)
+        return miss
 
     def _try(
         self, left: np.ndarray, delta: np.ndarray, discs: bool
@@ -128,9 +146,10 @@ class _Attempt:
     def findings(self) -> Findings:
         """Return the cells with their best angles, and where to cut them."""
         seeds = unlike(self.angles, self.score, SEEDS)
-        edges = self.cells.edges(self.hulls)
+        edges, sag = self.cells.edges(self.hulls)
         length = np.linalg.norm(edges, axis=2)
         need = np.abs(edges @ self.bottleneck.mT).max(axis=2)
+        need[:, :-1] += np.abs(sag[:, None] @ self.bottleneck.mT).max(axis=2)
         slender = length < length.max(axis=1, keepdims=True) / _SLENDER
         axis = np.where(slender | (length == 0), -1.0, need).argmax(axis=1)
         cells = replace(self.cells, seeds=seeds)

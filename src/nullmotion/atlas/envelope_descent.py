@@ -12,13 +12,17 @@ and Hanson 1974, Ch 23) is the next guess: smooth minima, creases and corners al
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.optimize import nnls
 
+from nullmotion.atlas import envelope_three
 from nullmotion.atlas.envelope_rings import Rings
-from nullmotion.atlas.envelope_search import Samples
 
-_STARTS = 24
+Starts = Callable[[np.ndarray], np.ndarray]  # momenta (B, m) to angles (B, S, c)
+
+_KNOWN = 24  # sheets that are kept
 _STEPS = 20  # of damped Newton
 _ROUNDS = 40
 _FIRST = 0.3  # farthest step over |h|
@@ -53,26 +57,30 @@ def closest(
     return delta, gap
 
 
-def distances(rings: Rings, samples: Samples, h: np.ndarray, starts: int = 8) -> np.ndarray:
+def distances(rings: Rings, starts: Starts, h: np.ndarray) -> np.ndarray:
     """Return the least distance found from momenta (B, m) to reachable ones, (B,)."""
-    delta = samples.near(h, starts)
-    _, gap = closest(rings, delta.reshape(-1, delta.shape[2]), np.repeat(h, starts, axis=0))
-    return np.linalg.norm(gap, axis=1).reshape(-1, starts).min(axis=1)
+    delta = starts(h)
+    count = delta.shape[1]
+    _, gap = closest(rings, delta.reshape(-1, delta.shape[2]), np.repeat(h, count, axis=0))
+    least: np.ndarray = np.linalg.norm(gap, axis=1).reshape(-1, count).min(axis=1)
+    if envelope_three.applies(rings):
+        least[envelope_three.proven(rings, h[:, None])] = 0.0
+    return least
 
 
 def smallest_near(
-    rings: Rings, samples: Samples, h: np.ndarray, margin: float
+    rings: Rings, starts: Starts, h: np.ndarray, margin: float
 ) -> np.ndarray:
     """Return a momentum (m,) as small as found from h on that stays ``margin`` away from R.
 
     Args:
         rings: The array's rings.
-        samples: Angles to start from.
+        starts: Gives angles to start from for momenta.
         h: A momentum that is that far from R.
         margin: Least distance to R that counts as unreachable.
     """
     known = np.zeros((0, len(rings.ring_of)))
-    known, gap = _sheets(rings, samples, known, h)
+    known, gap = _sheets(rings, starts, known, h)
     farthest = _FIRST * float(np.linalg.norm(h))
     for _ in range(_ROUNDS):
         step = _smallest(h, gap, 2 * margin, farthest) - h
@@ -80,22 +88,23 @@ def smallest_near(
         if length < 0.1 * margin or farthest < 0.1 * margin:
             break
         trial = h + step * min(1.0, farthest / length)
-        angles, rest = _sheets(rings, samples, known, trial)
-        outside = np.linalg.norm(rest, axis=1).min() > margin
+        angles, rest = _sheets(rings, starts, known, trial)
+        outside = distances(rings, starts, trial[None])[0] > margin
+        outside &= np.linalg.norm(rest, axis=1).min() > margin
         if outside and np.linalg.norm(trial) < np.linalg.norm(h):
             h, known, gap = trial, angles, rest
         else:
             known = np.concatenate([known, angles])
             farthest = _SHRUNK * min(farthest, length)
-            known, gap = _sheets(rings, samples, known, h)
+            known, gap = _sheets(rings, starts, known, h)
     return h
 
 
 def _sheets(
-    rings: Rings, samples: Samples, known: np.ndarray, h: np.ndarray
+    rings: Rings, starts: Starts, known: np.ndarray, h: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return angles (S, c) of local minima around h, the nearest first, and h minus theirs."""
-    start = np.concatenate([known[:_STARTS], samples.near(h[None], _STARTS)[0]])
+    start = np.concatenate([known[:_KNOWN], starts(h[None])[0]])
     delta, gap = closest(rings, start, np.tile(h, (len(start), 1)))
     order = np.argsort(np.linalg.norm(gap, axis=1))
     return delta[order], gap[order]

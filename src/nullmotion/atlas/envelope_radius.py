@@ -23,7 +23,8 @@ Progress = Callable[[float], None]
 _BATCH = 4000  # cells looked at together
 _TRIED = 12  # centres at once that are tried to be unreachable
 _MARGIN = 0.1  # distance from R of momenta shown unreachable, over tolerance and radius
-_FINEST = 0.1  # least edge of a cell, over the radius and the tolerance
+_FINEST = 0.25  # least edge of a cell around a reachable momentum, over radius and tolerance
+_FINER = 0.05  # of the others
 _BUDGET = 400_000  # cells
 
 
@@ -31,9 +32,13 @@ class Radius(NamedTuple):
     """Bounds of the least |h| that is unreachable, in units of the mean momentum.
 
     Attributes:
-        lower: All momenta up to it are reachable.
+        lower: All momenta up to it are reachable, but for what may hide in ``points``.
         upper: A momentum of this size is not reachable, or R has no room beyond it.
         at: That momentum, (m,).
+        proven: All momenta up to it are reachable.
+        points: Number of cells below ``lower`` that are left out: their centres are reachable,
+            all around them is.
+        size: Their edges are shorter than this.
         cells: Number of cells looked at.
         complete: Whether the bounds are as close as they were asked to be.
     """
@@ -41,6 +46,9 @@ class Radius(NamedTuple):
     lower: float
     upper: float
     at: np.ndarray
+    proven: float
+    points: int
+    size: float
     cells: int
     complete: bool
 
@@ -65,7 +73,7 @@ def least_unreachable(
     """
     origin = np.zeros(rings.m)
     if envelope_outside.proven(rings, origin[None, None])[0]:
-        return Radius(0.0, 0.0, origin, 0, True)
+        return Radius(0.0, 0.0, origin, 0.0, 0, 0.0, 0, True)
     search = _Search(Explorer(rings), start, tolerance)
     while len(cells) and search.looked_at < budget:
         cells = cells.take(cells.nearest < search.upper * (1 - tolerance))
@@ -84,7 +92,9 @@ class _Search:
     def __init__(self, explorer: Explorer, start: np.ndarray, tolerance: float) -> None:
         self.explorer, self.tolerance = explorer, tolerance
         self.at, self.upper = start, float(np.linalg.norm(start))
-        self.stuck, self.looked_at = np.inf, 0
+        self.points: list[float] = []
+        self.stuck: list[float] = []
+        self.looked_at = 0
 
     def step(self, cells: Cells) -> Cells:
         """Return what is left of cells, cut."""
@@ -92,23 +102,25 @@ class _Search:
         found = self.explorer.explore(cells)
         self._lower_the_upper(found)
         open_cells, axis = found.cells.take(~found.inside), found.axis[~found.inside]
-        fine = open_cells.longest < _FINEST * self.tolerance * self.upper
-        if fine.any():
-            self.stuck = min(self.stuck, float(open_cells.nearest[fine].min()))
+        reached = found.reached[~found.inside]
+        finest = self.tolerance * self.upper * np.where(reached, _FINEST, _FINER)
+        fine = open_cells.longest < finest
+        for which, left in ((fine & reached, self.points), (fine & ~reached, self.stuck)):
+            left.extend(open_cells.nearest[which].tolist())
         return open_cells.take(~fine).halves(axis[~fine])
 
     def _lower_the_upper(self, found: Findings) -> None:
-        rings, samples = self.explorer.rings, self.explorer.samples
+        rings, starts = self.explorer.rings, self.explorer.starts
         centres = found.cells.centres()[~found.inside & ~found.reached]
         size = np.linalg.norm(centres, axis=1)
         order = np.argsort(size)
         centres = centres[order[size[order] < self.upper * (1 - self.tolerance)][:_TRIED]]
         margin = _MARGIN * self.tolerance * self.upper
         if len(centres):
-            centres = centres[distances(rings, samples, centres) > margin]
+            centres = centres[distances(rings, starts, centres) > margin]
         if len(centres) == 0:
             return
-        best = smallest_near(rings, samples, centres[0], margin)
+        best = smallest_near(rings, starts, centres[0], margin)
         for h in (best, centres[0]):
             if envelope_outside.proven(rings, h[None, None])[0]:
                 self.at, self.upper = h, float(np.linalg.norm(h))
@@ -116,7 +128,12 @@ class _Search:
 
     def result(self, cells: Cells) -> Radius:
         """Return the bounds, given the cells that are left."""
-        left = float(cells.nearest.min()) if len(cells) else np.inf
-        lower = min(self.upper * (1 - self.tolerance), self.stuck, left)
-        complete = min(left, self.stuck) >= self.upper * (1 - self.tolerance)
-        return Radius(lower, self.upper, self.at, self.looked_at, complete)
+        wanted = self.upper * (1 - self.tolerance)
+        left = min([*cells.nearest.tolist(), *self.stuck], default=np.inf)
+        lower = min(wanted, left)
+        points = [r for r in self.points if r < lower]
+        size = _FINEST * self.tolerance * self.upper
+        proven = min([lower, *points])
+        return Radius(
+            lower, self.upper, self.at, proven, len(points), size, self.looked_at, left >= wanted
+        )

@@ -87,7 +87,7 @@ def sampled(rings: Rings) -> Samples:
 def unlike(angles: np.ndarray, score: np.ndarray, count: int) -> np.ndarray:
     """Return the best of angles (B, T, c) by score (B, T) that are not the same, (B, count, c)."""
     left, rows, chosen = score.copy(), np.arange(len(score)), []
-    for _ in range(min(count, score.shape[1])):
+    for _ in range(count):
         best = left.argmax(axis=1)
         chosen.append(angles[rows, best])
         apart = np.abs(np.sin(0.5 * (angles - chosen[-1][:, None]))).max(axis=2)

@@ -12,7 +12,7 @@ from nullmotion.atlas.manifold_seeds import held
 
 _WALKERS, _TRIES, _ROUNDS = 6, 8, 60
 _FIRST, _LAST = 0.05, 1e-6  # rad; length of a try
-_CLOSE = 1e-10  # momentum error over the mean momentum
+_CLOSE = 1e-14  # momentum error over the mean momentum
 
 
 class Best(NamedTuple):

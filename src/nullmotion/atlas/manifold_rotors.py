@@ -31,6 +31,11 @@ class Rotors:
         A: np.ndarray = c * self._torque.T - s * self._spin.T
         return A
 
+    def unit_momenta(self, delta: np.ndarray) -> np.ndarray:
+        """Return each CMG's momentum over the mean momentum, (..., n, m)."""
+        h: np.ndarray = np.cos(delta)[..., None] * self._spin
+        return h + np.sin(delta)[..., None] * self._torque
+
     def missing(self, delta: np.ndarray, momentum: np.ndarray) -> np.ndarray:
         """Return what angles lack to a momentum [N m s], over the mean momentum, (..., m)."""
         turning = np.cos(delta) @ self._spin + np.sin(delta) @ self._torque

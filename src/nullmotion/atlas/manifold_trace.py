@@ -20,7 +20,7 @@ _LONGEST, _SHORTEST = 0.05, 1e-6  # rad
 _TURN = 0.08  # rad, of the null vector that a step aims at; three times that is refused
 _MOST_STEPS = 20_000
 _SAME = 1e-7  # rad; points closer than this are one
-_NEAREST = 3  # points of a curve beside which others are looked for
+_BULGE = 0.05  # of a chord: how far a curve is from it (an eighth of its turn)
 _DAMPING = 1e-15
 
 
@@ -76,7 +76,9 @@ def _follow(
         if step is None:
             break
         here, heading, size = step
-        if len(path) > 2 and _passes(rotors, start, tangent, path[-1], here, momentum):
+        last = np.array([path[-1], here])
+        beside = float(np.linalg.norm(wrapped(start - here))) < 2 * _LONGEST
+        if beside and len(path) > 2 and lie_on(rotors, start[None], last, momentum)[0]:
             turns = 2 * np.pi * np.rint((here - start) / (2 * np.pi))
             return [*path, start + turns], True
         path.append(here)
@@ -106,30 +108,25 @@ def _side(rotors: Rotors, delta: np.ndarray, heading: np.ndarray) -> bool:
     return bool(np.linalg.det(np.vstack([rotors.unit_jacobian(delta), heading])) > 0)
 
 
-def _passes(
-    rotors: Rotors, point: np.ndarray, tangent: np.ndarray, begin: np.ndarray, end: np.ndarray,
-    momentum: np.ndarray,
-) -> bool:  # fmt: skip
-    """Return whether a short piece of the curve goes through a point of the self-motion set."""
-    chord, away = end - begin, wrapped(point - begin)
-    size = float(np.linalg.norm(chord))
-    share = float(away @ chord) / (size * size)
-    if not -0.01 < share < 1.01 or np.linalg.norm(away - share * chord) > 0.2 * size:
-        return False
-    near = point - away + share * chord
-    return bool(_meets(rotors, point[None], tangent[None], near[None], momentum)[0])
+def lie_on(
+    rotors: Rotors, points: np.ndarray, angles: np.ndarray, momentum: np.ndarray
+) -> np.ndarray:
+    """Return which regular angles (k, n) of the momentum are on a curve through points (P, n).
 
-
-def lie_on(rotors: Rotors, points: np.ndarray, curve: Curve, momentum: np.ndarray) -> np.ndarray:
-    """Return which regular angles (k, n) of the momentum are on a curve, (k,)."""
-    away = wrapped(points[:, None] - curve.angles)  # (k, P, n)
-    distance = np.linalg.norm(away, axis=2)
-    order = np.argsort(distance, axis=1)[:, :_NEAREST]
-    tangent = np.linalg.svd(rotors.unit_jacobian(points))[2][:, -1]
-    rows, found = np.arange(len(points)), np.zeros(len(points), bool)
-    for k in order.T:
-        close = distance[rows, k] < 2 * _LONGEST
-        found |= close & _meets(rotors, points, tangent, points - away[rows, k], momentum)
+    Such an angle is as close to a chord as the curve is, and what Newton's method makes of its
+    foot on the chord. (Beside a crossing it would lead from one curve to the other.)
+    """
+    begin, chord = angles[:-1], np.diff(angles, axis=0)
+    size = np.linalg.norm(chord, axis=1)
+    away = wrapped(points[:, None] - begin)  # (k, P - 1, n)
+    share = np.clip(np.einsum("kpn,pn->kp", away, chord) / size**2, -0.01, 1.01)
+    off = np.linalg.norm(away - share[..., None] * chord, axis=2)
+    place = np.argmin(off / size, axis=1)
+    rows = np.arange(len(points))
+    foot = points - away[rows, place] + share[rows, place, None] * chord[place]
+    found = off[rows, place] < _BULGE * size[place]
+    tangent = np.linalg.svd(rotors.unit_jacobian(points[found]))[2][:, -1]
+    found[found] = _meets(rotors, points[found], tangent, foot[found], momentum)
     return found
 
 

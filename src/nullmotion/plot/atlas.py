@@ -90,18 +90,19 @@ def _name(look: Look) -> str:
 
 
 def _plane(axes: Any, scene: Scene, made: Pieces, axis: int) -> None:
-    """Draw the cut at zero along one torque axis."""
+    """Draw the cut across one torque axis, through the middle of the envelope."""
     from matplotlib.collections import LineCollection
 
     a, b = (k for k in range(3) if k != axis)
-    found = cut(made, np.eye(3)[axis])
+    at = float(scene.middle[axis])
+    found = cut(made, np.eye(3)[axis], at)
     for k, look in enumerate(LOOKS):
         ends = found.ends[found.kind == k][:, :, [a, b]]
         width = _LINE * look.width
         lines = LineCollection(ends, colors=look.colour, linewidths=width, capstyle="round")
         axes.add_collection(lines)
     names = basis_names(scene.array.torque_axes)
-    _flat(axes, scene, a, b, f"Cut at h{names[axis]} = 0")
+    _flat(axes, scene, a, b, f"Cut at h{names[axis]} = {at:.3g}")
 
 
 def _lines(axes: Any, scene: Scene) -> None:
@@ -121,7 +122,7 @@ def _flat(axes: Any, scene: Scene, a: int, b: int, title: str) -> None:
 
     for ball in scene.balls:
         dash = style.LINE_STYLES[ball.dash]
-        circle = Circle((0, 0), ball.radius, fill=False, color=ball.colour, ls=dash, lw=1.1)
+        circle = Circle(scene.middle[[a, b]], ball.radius, fill=False, color=ball.colour, ls=dash, lw=1.1)
         axes.add_patch(circle)
     for motion in scene.motions:
         dash = style.LINE_STYLES[motion.dash]

@@ -87,6 +87,13 @@ class Scene:
     left_out: int = 0
 
     @property
+    def middle(self) -> np.ndarray:
+        """The array's bias along the torque axes, about which the envelope is [N m s], (m,)."""
+        assert self.array.torque_axes is not None
+        found: np.ndarray = self.array.torque_axes @ np.asarray(self.array.momentum_bias, float)
+        return found
+
+    @property
     def radius(self) -> float:
         """Size of the picture: the largest momentum on a sheet or of a motion [N m s]."""
         found = [np.linalg.norm(sheet.momentum, axis=1).max() for sheet in self.sheets]

@@ -100,7 +100,7 @@ def plane(scene: Scene) -> Markup:
             tag("select", join(*options), id="atlas-plane", autocomplete="off"),
             class_="slide",
         ),
-        _slider("Place [N m s]", "atlas-offset", -100, 100, 1, 0, output="atlas-offset-text"),
+        _slider("At [N m s]", "atlas-offset", -100, 100, 1, 0, output="atlas-offset-text"),
     )
 
 

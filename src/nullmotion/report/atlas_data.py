@@ -10,7 +10,7 @@ import numpy as np
 
 from nullmotion.plot import palette
 from nullmotion.plot.atlas_looks import LOOKS, Look
-from nullmotion.plot.atlas_view import FEW_SHEETS, Motion, Scene, sign_name
+from nullmotion.plot.atlas_view import FEW_SHEETS, Ball, Motion, Scene, sign_name
 from nullmotion.plot.quantities import basis_names
 
 _FULL = 32767  # of a 16-bit number
@@ -60,7 +60,7 @@ def block(scene: Scene, begin_at_end: bool = False) -> dict[str, Any]:
         "colours": list(palette.COLOURS),
         "meshes": [_mesh(scene, coded)],
         "sheets": [_sheet(scene, index, quantum, coded) for index in range(len(scene.sheets))],
-        "spheres": [asdict(ball) | {"angle": 150 + 20 * k} for k, ball in enumerate(scene.balls)],
+        "spheres": [_ball(scene, k, ball) for k, ball in enumerate(scene.balls)],
         "motions": [_motion(scene, motion, coded) for motion in scene.motions],
         "begin_at_end": begin_at_end,
         "arrays": coded.texts,
@@ -72,6 +72,13 @@ def _look(scene: Scene, look: Look) -> dict[str, Any]:
     thinner = min(1.0, (8 / len(scene.sheets)) ** 0.5)
     alpha = look.alpha if look.stripes else look.alpha * thinner
     return asdict(look) | {"shown": True, "alpha": alpha, "rim": look.rim * thinner}
+
+
+def _ball(scene: Scene, place: int, ball: Ball) -> dict[str, Any]:
+    """Return a radius about the array's bias; names are set apart along the outlines."""
+    centre = np.zeros(3)
+    centre[: scene.array.m] = _drawn(scene, scene.middle)
+    return asdict(ball) | {"angle": 150 + 20 * place, "centre": centre.tolist()}
 
 
 def _drawn(scene: Scene, vectors: np.ndarray) -> np.ndarray:

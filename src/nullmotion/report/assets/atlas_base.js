@@ -66,8 +66,11 @@ function projection(width, height, radius, zoom) {
       const f = (size * far) / (far - dot(towards, p));
       return [width / 2 + f * dot(right, p), height / 2 - f * dot(up, p)];
     },
-    // Radius in pixels of a sphere about the origin, as its outline shows it.
-    outline: (r) => (size * far * r) / Math.sqrt(Math.max(far * far - r * r, 1e-12)),
+    // Radius in pixels of a sphere, as its outline shows it.
+    outline(r, centre) {
+      const away = far - dot(towards, centre);
+      return (size * far * r) / Math.sqrt(Math.max(away * away - r * r, 1e-12));
+    },
   };
 }
 

@@ -212,7 +212,7 @@ function setPlane() {
   const text = `${fixed(offset, 3)} N m s`;
   $("#atlas-offset").setAttribute("aria-valuetext", text);
   $("#atlas-offset-text").textContent = on ? fixed(offset, 3) : "–";
-  repaint();
+  space.moved();
 }
 if (!planar) {
   $("#atlas-plane").addEventListener("change", () => { state.plane = null; setPlane(); });

@@ -25,8 +25,10 @@ function sliceView(data, array, state, section) {
       Object.assign(context, { strokeStyle: kind.colour, lineWidth: kind.width, lineCap: "round" });
       context.stroke();
     });
-    for (const ball of data.spheres.filter((s) => state.spheres[s.key] && s.radius > Math.abs(plane.offset))) {
-      const r = (side * Math.sqrt(ball.radius ** 2 - plane.offset ** 2)) / (2 * most), at = to(0, 0);
+    for (const ball of data.spheres.filter((s) => state.spheres[s.key])) {
+      const away = plane.offset - dot(plane.normal, ball.centre), at = flat(ball.centre);
+      if (ball.radius <= Math.abs(away)) continue;
+      const r = (side * Math.sqrt(ball.radius ** 2 - away ** 2)) / (2 * most);
       context.beginPath();
       context.arc(...at, r, 0, 2 * Math.PI);
       Object.assign(context, { strokeStyle: ball.colour, lineWidth: 1.6 });

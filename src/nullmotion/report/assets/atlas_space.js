@@ -93,7 +93,7 @@ function spaceView(data, array, state) {
   });
 
   function drawBall(context, where, ball) {
-    const r = where.outline(ball.radius), at = where.to(ball.centre ?? [0, 0, 0]);
+    const r = where.outline(ball.radius, ball.centre), at = where.to(ball.centre);
     for (const [colour, width, dash] of [["rgba(255,255,255,.75)", 4, []], [ball.colour, 2, DASH[ball.dash]]]) {
       context.beginPath();
       context.arc(at[0], at[1], r, 0, 2 * Math.PI);
