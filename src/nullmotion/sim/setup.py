@@ -144,6 +144,9 @@ class Setup:
         for metric in (*self.metrics, *(s.metric for s in self.stop)):
             if metric.needs_body and self.spacecraft is None:
                 raise InputError("metrics", metric.name, "a metric that needs no spacecraft")
+            if metric.needs_wheels and not self.variable_speed:
+                allowed = "a metric that needs no variable wheel speeds"
+                raise InputError("metrics", metric.name, allowed)
         if self.spacecraft is not None:
             self._check_attitude()
         elif self.reaction_wheel is not None:
