@@ -166,7 +166,7 @@ class Setup:
         for event in self.events:
             if event.kind == "spin-down":
                 raise InputError("event.kind", event.kind, "'wheel-dead', or a gimbal's fault")
-        if self.integrator != "rk4":
+        if self.integrator != "rk4" and self.spacecraft is not None:
             raise InputError("integrator", self.integrator, "'rk4' for variable-speed CMGs")
         if self.spacecraft is not None:
             put(self, "units", (self.units or Units(0.0, 0.0, 0.0)).for_n(array.n))
