@@ -75,7 +75,8 @@ def _beside(scenario: Scenario, v: Validator) -> None:
             v.add((key,), MISSING, f"not beside {why}, which changes wheel speeds{own}")
     if scenario.simulation.integrator != "rk4" and scenario.spacecraft is not None:
         value = scenario.simulation.integrator
-        v.add(("simulation", "integrator"), value, "'rk4' for a spacecraft whose wheel speeds change")
+        allowed = "'rk4' for a spacecraft whose wheel speeds change"
+        v.add(("simulation", "integrator"), value, allowed)
     section = scenario.array
     if section.angle_limits_deg is not None and _driven_by_torque(scenario):
         allowed = 'only with vscmg.drive = "rate" (this is "torque")'
