@@ -24,6 +24,7 @@ import lookahead
 import lookahead_triangle
 import plan_search
 import throughput
+import vscmg
 from common import HEAD, Row
 
 import nullmotion as nm
@@ -54,6 +55,7 @@ def measure(quick: bool) -> tuple[list[Row], str]:
         "Plans, one core": plan_search.rows(quick),
         "Torque capability and certificates": guarantees.rows(quick),
         "Looking ahead, one core": [*lookahead.rows(quick), *lookahead_triangle.rows(quick)],
+        "Startup of variable-speed CMGs": vscmg.rows(quick),
         "Accuracy": accuracy.rows(quick),
     }
     everything = []

@@ -28,7 +28,7 @@ def slew() -> Callable[..., Any]:
     from nullmotion import laws, layouts, metrics, sim, spacecraft
     from nullmotion.spacecraft import controllers
 
-    measured = tuple(metrics.get(name)() for name in metrics.names())
+    measured = tuple(metrics.get(name)() for name in metrics.applicable(True))
 
     def fly(**changes: Any) -> Any:
         setup = {

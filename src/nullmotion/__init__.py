@@ -13,6 +13,7 @@ __version__ = "0.1.0"
 
 _WHERE = {
     "CmgArray": "nullmotion.array.model",
+    "Wheels": "nullmotion.array.wheels",
     "Layout": "nullmotion.array.layout",
     "Law": "nullmotion.law",
     "Claim": "nullmotion.law",
@@ -38,6 +39,7 @@ _MODULES = {
     "singular_lines": "nullmotion.singular_lines",
     "singularity": "nullmotion.singularity",
     "sizing": "nullmotion.sizing",
+    "vscmg": "nullmotion.vscmg",
 }
 
 __all__ = ["__version__", *_WHERE, *_MODULES]

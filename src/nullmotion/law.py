@@ -39,6 +39,8 @@ class Observation:
         omega_BN_B: Body rate in B [rad/s], (3,).
         wheel_speed: Wheel speeds [rad/s], (n,).
         preview: hdot at this and the coming samples, as far as foreseen [N m], (k, m).
+        torque_matrix: Q of hdot = Q [wheel accelerations, gimbal rates] as a controller estimates
+            it [N m s^2/rad, N m s/rad], (m, 2n).
     """
 
     delta: Any
@@ -49,6 +51,7 @@ class Observation:
     omega_BN_B: Any = None
     wheel_speed: Any = None
     preview: Any = None
+    torque_matrix: Any = None
 
 
 State = Any  # a float, array, tuple or named tuple of those; () when there is none
@@ -74,6 +77,8 @@ class Law:
         traceable: False for a law that solves a problem while it runs (a host law).
         knows_axes: True for a law that must know the axes of the array while it is traced:
             they cannot differ between the runs of a batch.
+        turns_wheels: True for a law of variable-speed CMGs: `step` returns gimbal rates and
+            wheel accelerations [rad/s^2] as a pair.
     """
 
     name: ClassVar[str] = ""
@@ -84,6 +89,7 @@ class Law:
     information: ClassVar[tuple[str, ...]] = ()
     traceable: ClassVar[bool] = True
     knows_axes: ClassVar[bool] = False
+    turns_wheels: ClassVar[bool] = False
 
     @property
     def information_used(self) -> tuple[str, ...]:

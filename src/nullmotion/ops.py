@@ -31,6 +31,13 @@ def _elementwise(function: Callable[..., Any], *values: Value) -> Value:
     return function(*[v[()] if isinstance(v, np.ndarray) else v for v in values])
 
 
+def _mapped(function: Callable[[Any], Any], x: Value) -> Value:
+    """Return a function of each element: NumPy's own needs arrays of symbols without floats."""
+    if getattr(x, "dtype", None) == object:
+        return np.frompyfunc(function, 1, 1)(x)
+    return function(x)
+
+
 def where(condition: Value, a: Value, b: Value) -> Value:
     """Return a where the condition holds, else b."""
     if is_symbolic(condition, a, b):
@@ -130,32 +137,32 @@ def sign(x: Value) -> Value:
 
 def absolute(x: Value) -> Value:
     """Return |x|."""
-    return np.abs(x)
+    return _mapped(np.abs, x)
 
 
 def sin(x: Value) -> Value:
     """Return sin x; |x| up to 1e5 rad on the tape."""
-    return np.sin(x)
+    return _mapped(np.sin, x)
 
 
 def cos(x: Value) -> Value:
     """Return cos x; |x| up to 1e5 rad on the tape."""
-    return np.cos(x)
+    return _mapped(np.cos, x)
 
 
 def exp(x: Value) -> Value:
     """Return e**x."""
-    return np.exp(x)
+    return _mapped(np.exp, x)
 
 
 def log(x: Value) -> Value:
     """Return the natural logarithm."""
-    return np.log(x)
+    return _mapped(np.log, x)
 
 
 def sqrt(x: Value) -> Value:
     """Return the square root."""
-    return np.sqrt(x)
+    return _mapped(np.sqrt, x)
 
 
 def rsqrt(x: Value, rough: bool = False) -> Value:
@@ -185,7 +192,7 @@ def copysign(a: Value, b: Value) -> Value:
 
 def acos(x: Value) -> Value:
     """Return the arc cosine."""
-    return np.arccos(x)
+    return _mapped(np.arccos, x)
 
 
 def atan2(y: Value, x: Value) -> Value:
@@ -206,7 +213,7 @@ def _leaves(*values: Value) -> list[Any]:
 def power(x: Value, p: float) -> Value:
     """Return x**p for x >= 0: by products when p is whole, a root for 1/2, else exp(p log x)."""
     if p == 0.5:
-        return np.sqrt(x)
+        return _mapped(np.sqrt, x)
     if float(p).is_integer():
         return _elementwise(lambda v: _tape.integer_power(v, p), x)
     positive = less(0.0, x)

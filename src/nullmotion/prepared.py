@@ -29,6 +29,9 @@ class PreparedLaw:
         delta: Buffer of measured gimbal angles [rad], (n,).
         hdot: Buffer of the wanted rate of momentum [N m], (m,).
         rates: Buffer of gimbal rates [rad/s], (n,).
+        wheel_speed: Buffer of wheel speeds for a law of variable-speed CMGs [rad/s], (n,): the
+            design speeds until set; empty for other laws.
+        accelerations: Buffer of such a law's wheel accelerations [rad/s^2], (n,).
         operations: Number of tape operations.
     """
 
@@ -38,20 +41,28 @@ class PreparedLaw:
         self.law, self.array = law, array
         self._like = law.init(array, np.zeros(n))
 
-        def step(delta: Any, hdot: Any, t: Any, state: Any) -> tuple[Any, Any]:
-            rates, after = law.step(array, Observation(delta, hdot, t, period), state)
-            return (array.limited(rates) if limited else rates), after
+        spins = n if law.turns_wheels else 0
 
-        examples = (np.zeros(n), np.zeros(m), 0.0, self._like)
+        def step(delta: Any, hdot: Any, t: Any, spin: Any, state: Any) -> tuple[Any, ...]:
+            seen = Observation(delta, hdot, t, period, wheel_speed=spin if spins else None)
+            asked, after = law.step(array, seen, state)
+            rates, accelerations = asked if spins else (asked, ())
+            return (array.limited(rates) if limited else rates), accelerations, after
+
+        examples = (np.zeros(n), np.zeros(m), 0.0, np.zeros(spins), self._like)
         program, _ = trace(step, *examples, fuse=llvm.host().fma)
         self.operations = program.operations
         self._flags = list(program.guards)
         carried = len(tree.flatten(self._like))
-        inputs = n + m + 1 + carried
-        self._io = np.zeros(inputs + n + len(self._flags))
+        inputs = n + m + 1 + spins + carried
+        self._io = np.zeros(inputs + n + spins + len(self._flags))
         self.delta, self.hdot = self._io[:n], self._io[n : n + m]
-        self._state = self._io[n + m + 1 : inputs]
-        self.rates, self._raised = self._io[inputs : inputs + n], self._io[inputs + n :]
+        self.wheel_speed = self._io[n + m + 1 : n + m + 1 + spins]
+        if spins:
+            self.wheel_speed[:] = array.design_speed
+        self._state = self._io[n + m + 1 + spins : inputs]
+        self.rates, rest = self._io[inputs : inputs + n], self._io[inputs + n :]
+        self.accelerations, self._raised = rest[:spins], rest[spins:]
         source = call_source(program, carried, self._io.ctypes.data)
         run = llvm.Machine(source, 2).function("call", brief=True)  # the address is its own
         self._bound = (self.delta, self.hdot, self._io[n + m : n + m + 1], run, self.rates)

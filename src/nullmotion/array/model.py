@@ -19,6 +19,7 @@ import numpy as np
 
 from nullmotion import ops
 from nullmotion.array.checks import as_vectors, checked_axes, checked_limits, per_cmg, torque_basis
+from nullmotion.array.wheels import Wheels
 from nullmotion.errors import InputError
 
 RateLimitMode = Literal["scale", "clip"]
@@ -40,6 +41,7 @@ class CmgArray:
         torque_axes: Orthonormal directions in which the array gives torque, (m, 3); by
             default all of B, or the common plane when all gimbal axes are parallel.
         label: Name for reports.
+        wheels: Flywheels whose speed may change (VSCMGs); None when the speeds are constant.
 
     Raises:
         InputError: For axes that are not unit vectors or not perpendicular, negative
@@ -55,6 +57,7 @@ class CmgArray:
     momentum_bias: np.ndarray = field(default_factory=lambda: np.zeros(3))
     torque_axes: np.ndarray | None = None
     label: str = "custom"
+    wheels: Wheels | None = None
 
     def __post_init__(self) -> None:
         """Check and normalise; symbols are put in by `nullmotion.tree` without this."""
@@ -81,6 +84,8 @@ class CmgArray:
             raise InputError("rate_limit_mode", self.rate_limit_mode, "'scale' or 'clip'")
         put(self, "angle_limits", checked_limits("angle_limits", self.angle_limits, n))
         put(self, "momentum_bias", as_vectors("momentum_bias", self.momentum_bias, 1)[0])
+        if self.wheels is not None:
+            put(self, "wheels", self.wheels.for_n(n))
         put(
             self,
             "torque_axes",
@@ -133,11 +138,39 @@ class CmgArray:
         least = ops.amin(self.rate_limit)
         return ops.where(ops.less(least, np.inf), least, np.pi)
 
+    @property
+    def flywheels(self) -> Wheels:
+        """The flywheels of variable-speed CMGs.
+
+        Raises:
+            InputError: When the wheels' speeds are constant.
+        """
+        if self.wheels is None:
+            raise InputError("array.wheels", None, "flywheels, for variable-speed CMGs")
+        return self.wheels
+
+    @property
+    def design_speed(self) -> Any:
+        """Wheel speeds that give the momenta h0 [rad/s], (n,); for VSCMGs."""
+        return self.h0 / self.flywheels.inertia
+
     def _spin(self) -> Any:
         return (self.spin_axes @ self._basis.T) * self.h0[:, None]
 
     def _transverse(self) -> Any:
         return (self.transverse_axes @ self._basis.T) * self.h0[:, None]
+
+    def wheel_axes(self, delta: Any) -> Any:
+        """Return C_W, the directions of the spin axes, (..., m, n), for angles (..., n) [rad]."""
+        delta = np.asarray(delta)
+        s, t = self.spin_axes @ self._basis.T, self.transverse_axes @ self._basis.T
+        return ops.cos(delta)[..., None, :] * s.T + ops.sin(delta)[..., None, :] * t.T
+
+    def transverse_directions(self, delta: Any) -> Any:
+        """Return C_T, the derivatives of C_W by the angles, (..., m, n): A = C_T diag(h0)."""
+        delta = np.asarray(delta)
+        s, t = self.spin_axes @ self._basis.T, self.transverse_axes @ self._basis.T
+        return ops.cos(delta)[..., None, :] * t.T - ops.sin(delta)[..., None, :] * s.T
 
     def rotor_momenta(self, delta: Any) -> Any:
         """Return each CMG's momentum h_i [N m s], (..., n, m)."""
@@ -231,4 +264,5 @@ class CmgArray:
             bias,
             self.torque_axes,
             f"{self.label} without CMG {', '.join(str(i) for i in sorted(gone))}",
+            self.wheels and self.wheels.kept(keep),
         )

@@ -12,6 +12,7 @@ from nullmotion.compile.loop import Loop, Stage
 from nullmotion.compile.places import tracing
 from nullmotion.compile.program import Program, finish, ordered, reachable
 from nullmotion.compile.tape import Symbol, Tape
+from nullmotion.errors import TraceError
 
 
 @dataclass(frozen=True)
@@ -96,6 +97,8 @@ def _trace_stages(
             if recording and loop.record is not None and index == loop.recorded_after:
                 record = loop.record(state)
             state = stage.function(k, row, state, parameters)
+    if tree.structure(state) != tree.structure(like):
+        raise TraceError("the loop's state changes its shape within a step")
     kept = tree.flatten(record)
     outputs = [*tree.flatten(state), *kept]
     inputs = [*state_in, *parameter_in, k, *row]

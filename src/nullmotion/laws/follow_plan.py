@@ -70,6 +70,8 @@ class FollowPlan(Law):
 
     def supports(self, array: CmgArray) -> str:
         """Ask for a null space, and for what the base law asks."""
+        if self.base_law.turns_wheels:
+            return f"plans are of gimbals alone, and {self.base} turns wheels, too"
         return without_null_motion(array) or self.base_law.supports(array)
 
     def init(self, array: CmgArray, delta: Any) -> Any:

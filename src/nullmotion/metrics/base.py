@@ -36,7 +36,10 @@ class Sample:
         omega_BN_B: Body rate in B [rad/s], (3,).
         q_BR: Attitude error against the reference, scalar part not negative, (4,).
         dt: Integration step [s].
-        turning: The array without its stuck CMGs; None if all turn.
+        turning: The array without its stuck CMGs; None if all turn. With variable wheel speeds:
+            the array at the speeds it was designed for.
+        wheel_speed: Wheel speeds [rad/s], (n,); None where they are constant, as the next.
+        wheel_acceleration: Their derivatives over the step [rad/s^2], (n,).
     """
 
     array: CmgArray
@@ -55,11 +58,18 @@ class Sample:
     q_BR: Any = None
     dt: Any = None
     turning: Any = None
+    wheel_speed: Any = None
+    wheel_acceleration: Any = None
 
     @property
     def working(self) -> CmgArray:
         """The CMGs that turn: what measures of singularity look at."""
         return self.array if self.turning is None else self.turning
+
+    @cached_property
+    def design_speed(self) -> Any:
+        """Wheel speeds that the array was designed for [rad/s], (n,); 0 for a stuck CMG."""
+        return self.working.h0 / self.array.flywheels.inertia
 
     @cached_property
     def jacobian(self) -> Any:
@@ -73,8 +83,14 @@ class Sample:
 
     @cached_property
     def torque(self) -> Any:
-        """Achieved rate of momentum A delta_dot [N m], (m,); the vehicle gets its negative."""
-        return self.jacobian @ self.rates
+        """Achieved rate of momentum A delta_dot [N m], (m,); the vehicle gets its negative.
+
+        With variable wheel speeds: A delta_dot + C_W I_W Omega_dot.
+        """
+        if self.wheel_acceleration is None:
+            return self.jacobian @ self.rates
+        given = self.array.wheels.inertia * self.wheel_acceleration  # type: ignore[union-attr]
+        return self.jacobian @ self.rates + self.array.wheel_axes(self.delta) @ given
 
     @cached_property
     def singular_values(self) -> Any:
@@ -110,6 +126,7 @@ class Metric:
         reductions: How a run sums it up.
         needs_rates: True if it has no meaning at the end of a run, where no rate applies.
         needs_body: True if it has no meaning without a spacecraft.
+        needs_wheels: True if it has no meaning where wheel speeds are constant.
     """
 
     name: ClassVar[str] = ""
@@ -119,6 +136,7 @@ class Metric:
     reductions: ClassVar[tuple[Reduction, ...]] = ("min", "final")
     needs_rates: ClassVar[bool] = False
     needs_body: ClassVar[bool] = False
+    needs_wheels: ClassVar[bool] = False
 
     def of(self, sample: Sample) -> Any:
         """Return the metric at one sample."""

@@ -39,7 +39,7 @@ def stage(
         scene: What the script draws; `from` and `to` are the ends of its clock.
         words: What the picture shows, for those who cannot see it.
         legend: What its lines and colours stand for.
-        events: Instants on the clock, with names.
+        events: Instants on the clock [s], with names.
         speeds: Choices of the speed, 1 among them.
         views: Directions to look from: key for the script, and name.
         wide: Whether the picture has the page's width.
@@ -55,6 +55,7 @@ def stage(
         ),
         legend,
         tag("p", _KEYS, class_="note"),
+        _moments(events) if events else "",
         _bridge(),
         class_="stage wide" if wide else "stage",
     )
@@ -112,17 +113,13 @@ def legend(entries: Sequence[tuple[str, str]]) -> Markup:
     return tag("ul", join(*items), class_="key")
 
 
-def moments(events: Sequence[tuple[float, str]], unit: str) -> Markup:
-    """Return a list of instants; pressing one goes there."""
+def _moments(events: Sequence[tuple[float, str]]) -> Markup:
+    """Return the instants [s]; pressing one goes there."""
     items = (
-        tag(
-            "li",
-            tag("button", f"{at:.2f} {unit}", type="button", data_at=f"{at:.6f}"),
-            tag("span", words),
-        )
+        tag("li", tag("button", f"{at:.2f} s", type="button", data_at=f"{at:.6f}"), words)
         for at, words in events
     )
-    return tag("ol", join(*items), class_="moments")
+    return join(tag("h3", "Events"), tag("ol", join(*items), class_="moments"))
 
 
 def scripts(scene: Mapping[str, Any], kind: str) -> Markup:

@@ -10,7 +10,7 @@ import numpy as np
 from nullmotion.report import page
 from nullmotion.report.charts import Charts, grid
 from nullmotion.report.markup import Markup, tag
-from nullmotion.report.rover_stage import legend, moments, scripts, stage
+from nullmotion.report.rover_stage import legend, scripts, stage
 from nullmotion.report.rover_step_events import happened, tipping
 from nullmotion.report.rover_step_numbers import number_table
 from nullmotion.report.rover_step_panels import step_panels
@@ -37,15 +37,14 @@ def write_step_report(
     panels = step_panels(plan, run, landing)
     charts = Charts.for_curves(sum(len(panel.curves) for panel in panels))
     drawn = grid([charts.add(panel, group="time") for panel in panels])
-    shown, events = scene(plan, run, landing), happened(run, landing)
-    instants = [(at, words) for at, _, words in events]
+    shown = scene(plan, run, landing)
+    instants = [(at, words) for at, _, words in happened(run, landing)]
     acted = stage(shown, _seen(plan), _legend(plan, run, landing), instants)
     head = title or f"{plan.rover.name}: a step over e{plan.frame.edge}"
     parts = [
         _header(plan, run, landing, head),
         page.section("Key numbers", row(_tiles(plan, run, landing)), id="numbers"),
         page.section("The step", tag("div", acted, drawn, class_="beside"), id="step"),
-        *([page.section("Events", moments(instants, "s"), id="events")] if events else []),
         page.section("Numbers", number_table(plan, run, landing), id="table"),
         scripts(shown, "step"),
     ]

@@ -16,6 +16,7 @@ from nullmotion import tree
 from nullmotion.compile import llvm
 from nullmotion.compile.kernel import LoopKernel
 from nullmotion.errors import InputError
+from nullmotion.sim import flywheels
 from nullmotion.sim.run import Progress, _columns, check_history, schedule, totals
 from nullmotion.sim.setup import Setup
 from nullmotion.sim.stages import loop, passes
@@ -37,6 +38,7 @@ class BatchResult:
         status: Flag to a boolean for each run.
         final_q_BN: Final attitude, (runs, 4); None without a spacecraft.
         final_omega_BN_B: Final body rate [rad/s], (runs, 3).
+        final_wheel_speed: Final wheel speeds of variable-speed CMGs [rad/s], (runs, n).
         history: Decimated histories on request, each (runs, samples, ...).
         backend: ``kernel`` or ``python``.
         instruction_set: Vector instructions of the kernel.
@@ -53,6 +55,7 @@ class BatchResult:
     instruction_set: str = ""
     final_q_BN: np.ndarray | None = None
     final_omega_BN_B: np.ndarray | None = None
+    final_wheel_speed: np.ndarray | None = None
 
     def __len__(self) -> int:
         """Return the number of runs."""
@@ -257,6 +260,8 @@ class _Job:
         status["non-finite"] = ~(
             np.isfinite(outcome.delta).all(axis=1) & np.isfinite(outcome.rates).all(axis=1)
         )
+        if base.variable_speed:
+            status[flywheels.CUT] = outcome.cut > 0
         code = outcome.stop.astype(int)
         reasons = ["end of run", *[s.reason for s in base.stop]]
         history = None
@@ -277,6 +282,7 @@ class _Job:
             llvm.host().instruction_set,
             outcome.q_BN if base.spacecraft else None,
             outcome.omega_BN_B if base.spacecraft else None,
+            outcome.spin if base.variable_speed else None,
         )
 
 

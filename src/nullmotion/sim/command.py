@@ -8,7 +8,7 @@ import numpy as np
 
 from nullmotion import linalg, rotation
 from nullmotion.array.model import CmgArray
-from nullmotion.sim import preview
+from nullmotion.sim import flywheels, preview
 from nullmotion.sim.setup import Setup
 from nullmotion.sim.state import Parameters, RunState
 from nullmotion.spacecraft import AttitudeObservation, faults
@@ -25,7 +25,7 @@ def measured_angles(s: RunState, p: Parameters) -> Any:
 
 def known_array(t: Any, s: RunState, p: Parameters) -> CmgArray:
     """Return the array that the law knows."""
-    return faults.as_known(p.array, p.events, t, measured_angles(s, p))
+    return faults.as_known(flywheels.spun(p.array, s), p.events, t, measured_angles(s, p))
 
 
 def command(setup: Setup, k: Any, row: Any, s: RunState, p: Parameters) -> RunState:
@@ -59,6 +59,10 @@ class _Motion(NamedTuple):
     omega: Any
     momentum: Any
     controller: Any
+    array: Any = None
+    delta: Any = None
+    rates: Any = None
+    limited: Any = 0.0
 
 
 def _controlled(setup: Setup, k: Any, row: Any, s: RunState, p: Parameters, count: int) -> RunState:
@@ -72,11 +76,18 @@ def _controlled(setup: Setup, k: Any, row: Any, s: RunState, p: Parameters, coun
     if wheel is not None:
         momentum = momentum + s.wheel * wheel.axis
     now = _Motion(q, omega, momentum, s.controller)
+    if flywheels.turning(s):
+        seen = measured_angles(s, p)
+        now = now._replace(array=array, delta=seen, rates=s.rates, limited=s.limited)
     hdot, controller, target = _feedback(setup, t, row, now, p)
     found = {"hdot": basis @ hdot, "controller": controller, "noise": noise, "reference": target}
     if wheel is not None:
         period = p.dt * float(setup.period_steps)
         found["wheel_rate"] = wheel.limited(wheel.axis @ hdot, s.wheel, period)
+    if not isinstance(s.torque_matrix, tuple):
+        assert p.controller is not None
+        matrix = p.controller.torque_matrix(_seen(setup, t, row, now, p), controller)
+        found["torque_matrix"] = basis @ matrix
     if count:
         found["preview"] = _foreseen(setup, k, now, p, count) @ basis.T
     return s._replace(**found)
@@ -84,11 +95,19 @@ def _controlled(setup: Setup, k: Any, row: Any, s: RunState, p: Parameters, coun
 
 def _feedback(setup: Setup, t: Any, row: Any, now: _Motion, p: Parameters) -> tuple[Any, Any, Any]:
     """Return hdot = -T - omega x h, T the controller's torque on the vehicle; state; reference."""
-    assert p.controller is not None and p.spacecraft is not None
+    assert p.controller is not None
+    seen = _seen(setup, t, row, now, p)
+    torque, controller = p.controller.step(seen, now.controller)
+    return -torque - linalg.cross(now.omega, now.momentum), controller, seen.q_RN
+
+
+def _seen(setup: Setup, t: Any, row: Any, now: _Motion, p: Parameters) -> AttitudeObservation:
+    """Return what the controller sees."""
+    assert p.spacecraft is not None
     reference = row if setup.reference is not None else None
     target = p.target if reference is None else reference[:4]
     zero = np.zeros(3)
-    seen = AttitudeObservation(
+    return AttitudeObservation(
         q_BN=now.q,
         omega_BN_B=now.omega,
         q_RN=target,
@@ -98,9 +117,11 @@ def _feedback(setup: Setup, t: Any, row: Any, now: _Motion, p: Parameters) -> tu
         momentum=now.momentum,
         t=t,
         period=p.dt * float(setup.period_steps),
+        array=now.array,
+        delta=now.delta,
+        rates=now.rates,
+        limited=now.limited,
     )
-    torque, controller = p.controller.step(seen, now.controller)
-    return -torque - linalg.cross(now.omega, now.momentum), controller, target
 
 
 def _foreseen(setup: Setup, k: Any, now: _Motion, p: Parameters, count: int) -> np.ndarray:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from nullmotion import rotation
+from nullmotion.sim import flywheels
 from nullmotion.sim.setup import Setup
 from nullmotion.sim.state import Parameters, RunState
 from nullmotion.spacecraft import dynamics, faults, motion
@@ -15,6 +16,8 @@ from nullmotion.spacecraft.motion import Motion
 
 def drive(setup: Setup, k: Any, s: RunState, p: Parameters) -> RunState:
     """Return the state with the gimbals' motion over this step."""
+    if flywheels.turning(s):
+        return flywheels.drive(setup, k, s, p)
     t, delta = k * p.dt, s.delta
     array = faults.as_it_is(p.true_array, p.events, t)
     turning = _turning(array, s)
@@ -54,6 +57,8 @@ def motion_of(s: RunState, p: Parameters) -> Motion:
 
 def advanced(setup: Setup, k: Any, s: RunState, p: Parameters) -> dict[str, Any]:
     """Return what a step changes of the state."""
+    if flywheels.turning(s):
+        return flywheels.advanced(s, p)
     moved, t = motion_of(s, p), k * p.dt
     found = {"delta": moved.angle_at(s.delta, p.dt), "previous": s.rates}
     if p.servo is not None:

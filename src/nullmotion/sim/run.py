@@ -14,6 +14,7 @@ from nullmotion.compile.kernel import LoopKernel
 from nullmotion.compile.loop import Loop, run_on_host
 from nullmotion.errors import InputError, MemoryLimitError, TraceError
 from nullmotion.metrics.base import PLAIN
+from nullmotion.sim import flywheels
 from nullmotion.sim.setup import Setup
 from nullmotion.sim.stages import loop, reductions
 from nullmotion.sim.state import Outcome, Record
@@ -78,6 +79,7 @@ def check_history(setup: Setup, runs: int, decimate: int) -> None:
     import os
 
     values = 5 * setup.array.n + 3 * setup.array.m + (11 if setup.spacecraft else 0)
+    values += (6 * setup.array.n + 9) if setup.variable_speed else 0
     need = 8 * runs * (setup.steps // decimate + 1) * values
     have = (
         os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
@@ -169,12 +171,16 @@ def histories(setup: Setup, columns: Record, taken: int, every: int) -> dict[str
     kept = taken // every + 1
     cut = Record(*[np.array(c[:kept]) for c in columns])
     if taken % every == 0:
-        for acting in (cut.rates, cut.asked, cut.motor_torque, cut.wheel_torque):
+        ends = ("rates", "asked", "motor_torque", "wheel_torque", "spin_rate", "spin_torque")
+        for acting in (getattr(cut, name) for name in ends):
             acting[-1] = np.nan
     found = {"t": np.arange(kept) * (setup.dt * every), **cut._asdict()}
+    for name in ("spin", "spin_rate", "spin_torque", "work"):
+        del found[name]
     found |= {"rates_asked": found.pop("asked"), "momentum_wanted": found.pop("wanted")}
     wheel = {key: found[key] for key in ("wheel_momentum", "wheel_torque")}
     found |= {k: v[:, 0] if setup.reaction_wheel else None for k, v in wheel.items()}
+    found |= flywheels.history(setup, cut)
     if setup.spacecraft is None:
         found |= dict.fromkeys(("q_BN", "omega_BN_B", "reference"))
     return found
@@ -203,6 +209,8 @@ def status(setup: Setup, outcome: Outcome, flags: list[str]) -> list[str]:
     found = list(flags)
     if not (np.isfinite(outcome.delta).all() and np.isfinite(outcome.rates).all()):
         found.append("non-finite")
+    if setup.variable_speed and outcome.cut > 0:
+        found.append(flywheels.CUT)
     return [*found, *(name for name, count in law_counts(setup, outcome).items() if count)]
 
 

@@ -22,6 +22,7 @@ from nullmotion.spacecraft import (
     Spacecraft,
 )
 from nullmotion.spacecraft.body import checked_quaternion
+from nullmotion.vscmg.hardware import Units
 
 Integrator = Literal["euler", "rk4", "semi-implicit-euler", "dop853"]
 
@@ -77,6 +78,9 @@ class Setup:
         desaturation: Torque from outside that takes momentum off the array.
         events: Faults; each begins with the first step that starts at or after its time.
         reaction_wheel: Wheel normal to the torque plane of a planar array on a spacecraft.
+        units: Inertias and drives of VSCMG units on a spacecraft (`array.wheels` are their
+            flywheels); a law that turns wheels alone needs none.
+        wheel_speed: Wheel speeds at the start [rad/s], (n,); those of h0 by default.
 
     Raises:
         UnsupportedArrayError: When the law cannot steer the array.
@@ -107,6 +111,8 @@ class Setup:
     desaturation: Desaturation | None = None
     events: tuple[Event, ...] = ()
     reaction_wheel: ReactionWheel | None = None
+    units: Units | None = None
+    wheel_speed: np.ndarray | None = None
 
     def __post_init__(self) -> None:
         """Check lengths and signs."""
@@ -138,10 +144,42 @@ class Setup:
         for metric in (*self.metrics, *(s.metric for s in self.stop)):
             if metric.needs_body and self.spacecraft is None:
                 raise InputError("metrics", metric.name, "a metric that needs no spacecraft")
+            if metric.needs_wheels and not self.variable_speed:
+                allowed = "a metric that needs no variable wheel speeds"
+                raise InputError("metrics", metric.name, allowed)
         if self.spacecraft is not None:
             self._check_attitude()
         elif self.reaction_wheel is not None:
             raise InputError("reaction_wheel", "given", "only on a spacecraft")
+        if self.variable_speed:
+            self._check_wheels()
+        elif self.wheel_speed is not None:
+            raise InputError("wheel_speed", "given", "only with a law or units that use it")
+
+    def _check_wheels(self) -> None:
+        put, array = object.__setattr__, self.array
+        if array.wheels is None:
+            raise InputError("array.wheels", None, "flywheels, for variable-speed CMGs")
+        for key in ("servo", "reaction_wheel"):
+            if getattr(self, key) is not None:
+                raise InputError(key, "given", "no such thing beside variable-speed CMGs")
+        for event in self.events:
+            if event.kind == "spin-down":
+                raise InputError("event.kind", event.kind, "'wheel-dead', or a gimbal's fault")
+        if self.integrator != "rk4" and self.spacecraft is not None:
+            raise InputError("integrator", self.integrator, "'rk4' for variable-speed CMGs")
+        if self.spacecraft is not None:
+            put(self, "units", (self.units or Units(0.0, 0.0, 0.0)).for_n(array.n))
+            assert self.units is not None
+            self.units.check_beside(self.true_array, self.spacecraft.inertia, self.delta)
+            stuck = [event.kind for event in self.events if event.kind == "stuck"]
+            if self.units.drive == "torque" and (stuck or array.has_angle_limits):
+                allowed = "'rate' with end stops or a stuck gimbal"
+                raise InputError("vscmg.drive", self.units.drive, allowed)
+        elif self.units is not None:
+            raise InputError("units", "given", "only on a spacecraft")
+        given = array.design_speed if self.wheel_speed is None else self.wheel_speed
+        put(self, "wheel_speed", _finite("wheel_speed", given, (array.n,)))
 
     def _check_servo(self, servo: Servo) -> None:
         for key, value in vars(servo).items():
@@ -169,6 +207,11 @@ class Setup:
         elif self.array.m != 3:
             allowed = "an array with torque in all three dimensions, or a reaction wheel"
             raise InputError("array", self.array.label, allowed)
+
+    @property
+    def variable_speed(self) -> bool:
+        """Whether the wheels' speeds change."""
+        return self.units is not None or self.law.turns_wheels
 
     @property
     def true_array(self) -> CmgArray:

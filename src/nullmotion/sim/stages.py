@@ -16,7 +16,7 @@ from nullmotion import ops, rotation, tree
 from nullmotion.compile.loop import Loop, Stage
 from nullmotion.law import Observation
 from nullmotion.metrics.base import Metric, Sample
-from nullmotion.sim import command, plant
+from nullmotion.sim import command, flywheels, plant
 from nullmotion.sim.setup import Setup
 from nullmotion.sim.state import Outcome, Parameters, Record, RunState, parameters
 from nullmotion.spacecraft import faults, motion
@@ -86,15 +86,23 @@ def record(s: RunState) -> Record:
         s.motor,
         s.wheel if isinstance(s.wheel, tuple) else np.array([s.wheel]),
         s.wheel_rate if isinstance(s.wheel_rate, tuple) else np.array([s.wheel_rate]),
+        s.spin,
+        s.spin_rate,
+        s.spin_torque,
+        np.array([s.limited]) if flywheels.turning(s) else (),
+        np.array([s.work]) if flywheels.turning(s) else (),
+        np.array(tree.flatten(s.controller)) if flywheels.turning(s) else (),
     )
 
 
 def outcome(s: RunState, p: Parameters) -> Outcome:
     """Return what is kept of the final state."""
-    array = faults.as_it_is(p.true_array, p.events, s.taken * p.dt)
+    array = flywheels.spun(faults.as_it_is(p.true_array, p.events, s.taken * p.dt), s)
     momentum = array.momentum(s.delta)
     law = () if p.law.traceable else s.law
-    return Outcome(s.stop, s.taken, s.delta, s.rates, momentum, s.sums, s.q, s.omega, law)
+    return Outcome(
+        s.stop, s.taken, s.delta, s.rates, momentum, s.sums, s.q, s.omega, law, s.spin, s.cut
+    )
 
 
 class _Run:
@@ -109,17 +117,18 @@ class _Run:
         reading: Any = nothing
         if p.servo is not None and p.servo.has("encoder_resolution"):
             reading = motion.quantised(p.delta, p.servo.encoder_resolution)
+        command_zero = np.zeros(2 * n) if self.setup.variable_speed else zero
         reference = np.array([1.0, 0.0, 0.0, 0.0]) if p.target is None else p.target
         return RunState(
             stop=0.0,
             taken=0.0,
             delta=p.delta,
             impulse=np.zeros(m),
-            wanted=p.true_array.momentum(p.delta),
+            wanted=self._momentum(p),
             hdot=np.zeros(m),
             asked=zero,
-            queue=(zero,) * queue,
-            due=zero,
+            queue=(command_zero,) * queue,
+            due=command_zero,
             rates=zero,
             previous=zero,
             law=p.law.init(p.array, p.delta + p.encoder_bias),
@@ -127,7 +136,7 @@ class _Run:
             q=craft.q_BN if craft else nothing,
             omega=craft.omega_BN_B if craft else nothing,
             reference=reference if craft else nothing,
-            controller=p.controller.init() if p.controller else nothing,
+            controller=p.controller.init(p.array) if p.controller else nothing,
             noise=nothing if p.noise is None else p.noise,
             speed=zero,
             acceleration=zero if p.servo else nothing,
@@ -136,7 +145,16 @@ class _Run:
             wheel=p.reaction_wheel.momentum if p.reaction_wheel else nothing,
             wheel_rate=0.0 if p.reaction_wheel else nothing,
             preview=nothing,
+            limited=0.0,
+            work=0.0,
+            **flywheels.started(self.setup, p),
         )
+
+    def _momentum(self, p: Parameters) -> Any:
+        array = p.true_array
+        if p.wheel_speed is not None:
+            array = array.altered(h0=array.flywheels.inertia * p.wheel_speed)
+        return array.momentum(p.delta)
 
     def command(self, k: Any, row: Any, s: RunState, p: Parameters) -> RunState:
         return command.command(self.setup, k, row, s, p)
@@ -169,8 +187,12 @@ class _Run:
             delta_dot=s.rates,
             omega_BN_B=None if isinstance(s.omega, tuple) else s.omega,
             preview=None if isinstance(s.preview, tuple) else s.preview,
+            wheel_speed=s.spin if flywheels.turning(s) else None,
+            torque_matrix=None if isinstance(s.torque_matrix, tuple) else s.torque_matrix,
         )
         asked, state = p.law.step(array, observation, s.law)
+        if flywheels.turning(s):
+            return flywheels.asked(s._replace(law=state), p, array, observation, asked)
         return s._replace(asked=asked, law=state, queue=(array.limited(asked), *s.queue[:-1]))
 
     def drive(self, k: Any, row: Any, s: RunState, p: Parameters) -> RunState:
@@ -203,12 +225,15 @@ class _Run:
     def _sample_at(self, k: Any, s: RunState, p: Parameters) -> Sample:
         first = ops.equal(s.taken, 0.0)
         body: dict[str, Any] = {}
-        if faults.of_kind(p.events, "stuck"):
+        if flywheels.turning(s):
+            body |= {"wheel_speed": s.spin, "wheel_acceleration": s.spin_rate}
+            body["turning"] = faults.as_working(p.true_array, p.events, k * p.dt)
+        elif faults.of_kind(p.events, "stuck"):
             body["turning"] = faults.as_working(p.true_array, p.events, k * p.dt)
         if not isinstance(s.q, tuple):
             body |= {"q_BN": s.q, "omega_BN_B": s.omega, "q_BR": _error(s)}
         return Sample(
-            array=faults.as_it_is(p.true_array, p.events, k * p.dt),
+            array=flywheels.spun(faults.as_it_is(p.true_array, p.events, k * p.dt), s),
             delta=s.delta,
             hdot=s.hdot,
             t=k * p.dt,

@@ -20,6 +20,7 @@ from nullmotion.spacecraft import (
     Servo,
     Spacecraft,
 )
+from nullmotion.vscmg.hardware import Units
 
 
 class RunState(NamedTuple):
@@ -27,7 +28,12 @@ class RunState(NamedTuple):
 
     ``due`` is the rate command in force, ``rates`` the mean rate of the step, ``speed`` the
     rate at its start, ``reading`` the encoder a step before, ``motor`` the motor torque,
-    ``wheel`` the reaction wheel's momentum and ``wheel_rate`` its derivative.
+    ``wheel`` the reaction wheel's momentum and ``wheel_rate`` its derivative. Of variable-speed
+    CMGs (`sim.flywheels`): ``spin`` the wheel speeds, ``spin_rate`` their derivatives over the
+    step, ``spin_torque`` the wheel motors', ``cut`` the samples whose torque a limit cut,
+    ``limited`` whether the last one was, ``rest`` the inertia without units, ``moved`` the
+    state at the step's end, ``work`` of the motors so far, ``torque_matrix`` what a controller
+    estimates for the law.
     """
 
     stop: Any
@@ -55,6 +61,15 @@ class RunState(NamedTuple):
     wheel: Any
     wheel_rate: Any
     preview: Any
+    spin: Any
+    spin_rate: Any
+    spin_torque: Any
+    cut: Any
+    limited: Any
+    rest: Any
+    moved: Any
+    work: Any
+    torque_matrix: Any
 
 
 class Parameters(NamedTuple):
@@ -79,6 +94,8 @@ class Parameters(NamedTuple):
     desaturation: Desaturation | None
     events: tuple[Event, ...]
     reaction_wheel: ReactionWheel | None
+    units: Units | None
+    wheel_speed: Any
 
     @property
     def true_array(self) -> CmgArray:
@@ -102,6 +119,12 @@ class Record(NamedTuple):
     motor_torque: Any
     wheel_momentum: Any
     wheel_torque: Any
+    spin: Any
+    spin_rate: Any
+    spin_torque: Any
+    limited: Any
+    work: Any
+    estimates: Any
 
 
 class Outcome(NamedTuple):
@@ -116,6 +139,8 @@ class Outcome(NamedTuple):
     q_BN: Any
     omega_BN_B: Any
     law: Any
+    spin: Any = ()
+    cut: Any = ()
 
 
 def parameters(setup: Setup) -> Parameters:
@@ -142,6 +167,8 @@ def parameters(setup: Setup) -> Parameters:
         setup.desaturation,
         setup.events,
         setup.reaction_wheel,
+        setup.units,
+        setup.wheel_speed if setup.variable_speed else None,
     )
 
 

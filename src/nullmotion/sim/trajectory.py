@@ -11,8 +11,11 @@ import numpy as np
 
 from nullmotion import rotation
 from nullmotion.array import momentum_state
+from nullmotion.sim import wheel_summary
 from nullmotion.sim.setup import Setup
 from nullmotion.spacecraft import faults
+from nullmotion.vscmg import dynamics
+from nullmotion.vscmg.hardware import rest_inertia
 
 
 @dataclass(frozen=True)
@@ -42,6 +45,13 @@ class Trajectory:
         wheel_momentum: Of the reaction wheel [N m s], (N+1,); None without one, as the next.
         wheel_torque: Rate of its momentum [N m], (N+1,); NaN in the last row.
         law_counts: What the law counted on the way, such as solutions that did not come.
+        wheel_speed: Wheel speeds of variable-speed CMGs [rad/s], (N+1, n); None, as all that
+            follow, where they are constant.
+        wheel_acceleration: Their derivatives over the steps [rad/s^2], (N+1, n).
+        wheel_motor_torque: Torque of the wheel motors [N m], (N+1, n).
+        limited: 1 where a limit kept back some of the torque that was asked for, else 0, (N+1,).
+        motor_work: Work of all motors so far, less friction [J], (N+1,); torque-driven units.
+        estimates: State of the controller, (N+1, ...).
     """
 
     setup: Setup
@@ -66,15 +76,30 @@ class Trajectory:
     wheel_momentum: np.ndarray | None = None
     wheel_torque: np.ndarray | None = None
     law_counts: Mapping[str, int] = field(default_factory=dict)
+    wheel_speed: np.ndarray | None = None
+    wheel_acceleration: np.ndarray | None = None
+    wheel_motor_torque: np.ndarray | None = None
+    limited: np.ndarray | None = None
+    motor_work: np.ndarray | None = None
+    estimates: np.ndarray | None = None
 
     @cached_property
     def momentum(self) -> np.ndarray:
         """Momentum of the true array [N m s], (N+1, m)."""
         array = self.setup.true_array
+        if self.wheel_speed is not None:
+            return self._wheel_momentum(array.wheel_axes(self.delta), self.wheel_speed)
         if not faults.of_kind(self.setup.events, "spin-down"):
             return array.momentum(self.delta)
         turning = np.einsum("kn,knm->km", self._shares(), array.rotor_momenta(self.delta))
         return turning + array.torque_axes @ array.momentum_bias
+
+    def _wheel_momentum(self, directions: np.ndarray, speed: np.ndarray) -> np.ndarray:
+        """Return the sum of I_W Omega times directions of each CMG, (N+1, m)."""
+        array = self.setup.true_array
+        total = np.einsum("kmn,kn->km", directions, array.flywheels.inertia * speed)
+        found: np.ndarray = total + array.torque_axes @ array.momentum_bias
+        return found
 
     def _shares(self) -> np.ndarray:
         """Return what share of its momentum each wheel still has, (N+1, n)."""
@@ -105,6 +130,8 @@ class Trajectory:
         if craft is None or self.q_BN is None or self.omega_BN_B is None:
             return None
         array = self.setup.true_array
+        if self.wheel_speed is not None:
+            return np.einsum("kij,ki->kj", _matrices(self.q_BN), self._vscmg_momentum())
         total = self.omega_BN_B @ craft.inertia + self.momentum @ array.torque_axes
         if self.setup.reaction_wheel is not None and self.wheel_momentum is not None:
             total = total + self.wheel_momentum[:, None] * self.setup.reaction_wheel.axis
@@ -112,9 +139,33 @@ class Trajectory:
             total = total + (servo.inertia * self.speed) @ array.gimbal_axes
         return np.einsum("kij,ki->kj", _matrices(self.q_BN), total)
 
+    def _vscmg_momentum(self) -> np.ndarray:
+        """Return the angular momentum of everything in B [N m s], (N+1, 3)."""
+        setup = self.setup
+        assert setup.units is not None and setup.spacecraft is not None
+        return dynamics.total_momentum(
+            setup.true_array,
+            setup.units,
+            rest_inertia(setup.true_array, setup.units, setup.spacecraft.inertia, setup.delta),
+            self.delta,
+            self.omega_BN_B,
+            self.speed,
+            self.wheel_speed,
+        )
+
     @cached_property
     def torque(self) -> np.ndarray:
-        """Achieved rate of momentum A delta_dot [N m], (N+1, m); the vehicle gets its negative."""
+        """Achieved rate of momentum A delta_dot [N m], (N+1, m); the vehicle gets its negative.
+
+        With variable wheel speeds: A delta_dot + C_W I_W Omega_dot.
+        """
+        if self.wheel_speed is not None and self.wheel_acceleration is not None:
+            array = self.setup.true_array
+            turned = self._wheel_momentum(
+                array.transverse_directions(self.delta), self.wheel_speed * self.rates
+            )
+            spun = self._wheel_momentum(array.wheel_axes(self.delta), self.wheel_acceleration)
+            return turned + spun - 2.0 * (array.torque_axes @ array.momentum_bias)
         return np.einsum("kmn,kn->km", self._jacobians, self.rates)
 
     @cached_property
@@ -188,6 +239,7 @@ class Trajectory:
             **self._attitude(),
             **{key: float(value) for key, value in self.metrics.items()},
             **({"law_counts": dict(self.law_counts)} if self.law_counts else {}),
+            **self._wheels(),
             "status": list(self.status) or ["ok"],
             "backend": self.backend,
             "instruction_set": self.instruction_set,
@@ -202,6 +254,11 @@ class Trajectory:
             "final_euler_321_deg": yaw_pitch_roll.tolist(),
             "final_omega_BN_B_rad_s": self.omega_BN_B[-1].tolist(),
         }
+
+    def _wheels(self) -> dict[str, Any]:
+        if self.wheel_speed is None:
+            return {}
+        return {"wheels": wheel_summary.wheels(self), "limited": wheel_summary.limits(self)}
 
     def to_xarray(self) -> Any:
         """Return the run as an `xarray.Dataset` with units and conventions."""

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 from nullmotion import rotation
+from nullmotion.array.model import CmgArray
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,10 @@ class AttitudeObservation:
         momentum: Momentum of the array as measured, in B [N m s], (3,).
         t: Time [s].
         period: Time to the next sample [s].
+        array: The array as known, its momenta as they are now; None if not told.
+        delta: Measured gimbal angles [rad], (n,).
+        rates: Gimbal rates over the period that ends [rad/s], (n,).
+        limited: Whether the command of that period was cut by a limit (1 or 0).
     """
 
     q_BN: Any
@@ -34,6 +39,10 @@ class AttitudeObservation:
     momentum: Any
     t: Any
     period: Any
+    array: Any = None
+    delta: Any = None
+    rates: Any = None
+    limited: Any = 0.0
 
     @cached_property
     def q_BR(self) -> Any:
@@ -59,6 +68,9 @@ class Controller:
         aliases: Other names.
         citation: Where it comes from.
         follows_profile: Whether it uses the reference's rate and acceleration.
+        learns_inertia: Whether it finds the inertia out while it flies: its feed-forward is
+            not exact from the start.
+        knows_torque_matrix: Whether it estimates how VSCMGs act (`torque_matrix`).
     """
 
     name: ClassVar[str] = ""
@@ -66,10 +78,16 @@ class Controller:
     aliases: ClassVar[tuple[str, ...]] = ()
     citation: ClassVar[str] = ""
     follows_profile: ClassVar[bool] = False
+    learns_inertia: ClassVar[bool] = False
+    knows_torque_matrix: ClassVar[bool] = False
 
-    def init(self) -> Any:
-        """Return the controller's state before its first sample."""
+    def init(self, array: CmgArray | None = None) -> Any:
+        """Return the controller's state before its first sample, for an array."""
         return ()
+
+    def torque_matrix(self, obs: AttitudeObservation, state: Any) -> Any:
+        """Return Q of hdot = Q [wheel accelerations, gimbal rates], (3, 2n), as estimated."""
+        raise NotImplementedError
 
     def step(self, obs: AttitudeObservation, state: Any) -> tuple[Any, Any]:
         """Return the torque wanted on the vehicle in B [N m], (3,), and the next state."""

@@ -9,7 +9,8 @@ import numpy as np
 
 from nullmotion.errors import InputError
 
-Kind = Literal["stuck", "slow", "spin-down"]
+Kind = Literal["stuck", "slow", "spin-down", "wheel-dead"]
+KINDS = ("stuck", "slow", "spin-down", "wheel-dead")
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,6 +22,8 @@ class Event:
     ``slow``: the gimbal turns at most `rate_limit`; the law then knows this limit.
     ``spin-down``: the wheel loses speed, its momentum is h0 (f + (1 - f) exp(-(t - at) / tau));
     what it loses goes to the body. The law then knows the momentum.
+    ``wheel-dead``: the motor of a VSCMG's wheel gives no torque; the wheel keeps its speed. The
+    law then uses the others.
 
     Args:
         kind: What happens.
@@ -42,8 +45,8 @@ class Event:
 
     def __post_init__(self) -> None:
         """Check kind and signs."""
-        if self.kind not in ("stuck", "slow", "spin-down"):
-            raise InputError("event.kind", self.kind, "'stuck', 'slow' or 'spin-down'")
+        if self.kind not in KINDS:
+            raise InputError("event.kind", self.kind, f"one of {', '.join(KINDS)}")
         for key in ("at", "detected_after", "rate_limit"):
             value = float(getattr(self, key))
             if not value >= 0:

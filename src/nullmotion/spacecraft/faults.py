@@ -71,7 +71,13 @@ def as_known(array: CmgArray, events: Events, t: Any, delta: Any) -> CmgArray:
     )
     held = array.altered(h0=array.h0 * known * (1.0 - turning)).rotor_momenta(delta)
     bias = array.momentum_bias + sum(held[i] for i in range(n)) @ array.torque_axes
-    return array.altered(h0=array.h0 * known * turning, momentum_bias=bias, rate_limit=limit)
+    altered = {"h0": array.h0 * known * turning, "momentum_bias": bias, "rate_limit": limit}
+    dead = of_kind(events, "wheel-dead")
+    if dead and array.wheels is not None:
+        most = array.wheels.torque_limit
+        told = _per_cmg(dead, n, most, lambda e, now: ops.where(_found(e, t), 0.0, now))
+        altered["wheels"] = array.wheels.altered(torque_limit=told)
+    return array.altered(**altered)
 
 
 def shares(events: Events, n: int, times: np.ndarray) -> np.ndarray:
@@ -90,6 +96,12 @@ def shares(events: Events, n: int, times: np.ndarray) -> np.ndarray:
 def stuck(events: Events, n: int, t: Any) -> Any:
     """Return 1 for each CMG that turns and 0 for each that is stuck, (n,)."""
     kind = of_kind(events, "stuck")
+    return _per_cmg(kind, n, 1.0, lambda e, now: ops.where(_begun(e, t), 0.0, now))
+
+
+def running(events: Events, n: int, t: Any) -> Any:
+    """Return 1 for each CMG whose wheel has a motor that works, else 0, (n,)."""
+    kind = of_kind(events, "wheel-dead")
     return _per_cmg(kind, n, 1.0, lambda e, now: ops.where(_begun(e, t), 0.0, now))
 
 

@@ -18,7 +18,14 @@ registry = Registry("layout", "nullmotion.array.layouts", "nullmotion.array.layo
 names = registry.names
 get = registry.get
 
-_ARRAY_KEYS = ("h0", "rate_limit", "rate_limit_mode", "angle_limits", "momentum_bias")
+_ARRAY_KEYS = (
+    "h0",
+    "rate_limit",
+    "rate_limit_mode",
+    "angle_limits",
+    "momentum_bias",
+    "wheels",
+)
 
 
 def create(name: str, **parameters: Any) -> CmgArray:
@@ -27,7 +34,7 @@ def create(name: str, **parameters: Any) -> CmgArray:
     Args:
         name: Layout; see `names`.
         **parameters: Fields of the layout (angles in rad) and of `CmgArray`
-            (h0, rate_limit, rate_limit_mode, angle_limits, momentum_bias).
+            (h0, rate_limit, rate_limit_mode, angle_limits, momentum_bias, wheels).
 
     Raises:
         UnknownNameError: For an unknown layout or parameter, with the nearest names.
