@@ -15,9 +15,9 @@ import pytest
 import xarray
 
 from nullmotion.cli import app, guard
+from nullmotion.rover.interrupt import interruptible
 from nullmotion.rover.path_cost import PlannedStep
 from nullmotion.rover.rover import peter
-from nullmotion.rover.interrupt import interruptible
 
 DISTANCE = 1 / np.sqrt(3)  # m, of a step of PETER
 
