@@ -348,13 +348,16 @@ def test_it_draws_quietly_and_fits(browser, files, kind, width):
 def test_keys_move_it_and_the_charts_follow(browser, files, kind):
     page, said, _ = opened(browser, files[kind])
     place = "[...document.querySelectorAll('.cursor')].map(c => parseFloat(c.style.left))"
-    until(page, f"{place}.every(x => x < 70)")
+    shown = "document.getElementById('cursor-time').textContent"
+    until(page, f"parseFloat({shown}) === 0")
+    left = page.evaluate(place)[0]
+    assert page.evaluate(place) == pytest.approx([left] * len(page.evaluate(place)))
     page.keyboard.press("ArrowRight")
     first = clock(page)
     assert first > 0
     page.keyboard.press("Shift+ArrowRight")
     assert clock(page) > first + 0.5
-    until(page, f"{place}.every(x => x > 72)")
+    until(page, f"{place}.every(x => x > {left + 5})")
     now = clock(page)
     page.keyboard.press("Space")
     until(page, f"document.getElementById('clock').value > {now + 0.3}")

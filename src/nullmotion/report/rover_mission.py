@@ -129,7 +129,8 @@ def _numbers(travel: Any) -> Markup:
         ("Farthest of a spike from the lattice", number(travel.drift), "m"),
         ("Searches of the path", str(travel.searches), "–"),
     ]
-    return table(("Quantity", "Value", "Unit"), rows, "The mission in numbers", (1,))
+    shown = [(name, value, tag("span", unit, class_="unit")) for name, value, unit in rows]
+    return table(("Quantity", "Value", "Unit"), shown, "The mission in numbers", (1,))
 
 
 def _steps(travel: Any) -> Markup:

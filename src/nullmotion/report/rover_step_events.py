@@ -11,6 +11,7 @@ from nullmotion.plot.view import Mark
 
 _NEAR = 0.06  # of the time: marks closer than that share the weightiest name
 _LATE = 0.6  # share of the time from which a mark's name runs to the left
+_RISES = ("departure", "lift-off")
 _HOW = {"m": "by up to", "rad": "by up to", "m/s": "at"}
 WEIGHT = ("landing", "tipping", "turning", "slip", "lift-off", "touchdown", "departure", "sliding")
 
@@ -41,7 +42,8 @@ def told(event: Any) -> str:
     sizes = {"m": (1e3, "mm"), "rad": (float(np.degrees(1.0)), "deg")}
     factor, unit = sizes.get(event.unit, (1.0, event.unit))
     where = "" if event.spike is None else f" of spike {event.spike}"
-    return f"{event.kind.capitalize()}{where}, {_HOW[event.unit]} {event.size * factor:.3g} {unit}"
+    how = "rising up to" if event.kind in _RISES else _HOW[event.unit]
+    return f"{event.kind.capitalize()}{where}, {how} {event.size * factor:.3g} {unit}"
 
 
 def marks(run: Any, landing: Any) -> tuple[Mark, ...]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from nullmotion.report.markup import Markup
+from nullmotion.report.markup import Markup, tag
 from nullmotion.report.rover_step_panels import OnGround
 from nullmotion.report.tables import table
 from nullmotion.report.wording import number
@@ -22,10 +22,17 @@ def number_table(plan: Any, run: Any, landing: Any) -> Markup:
         columns.append(("closed loop", run))
     if landing is not None:
         columns.append(("on the ground", landing))
-    rows = [(name, *(_value(step, read) for _, step in columns), unit) for name, unit, read in ROWS]
+    rows = [
+        (name, *(_value(step, read) for _, step in columns), _unit(unit))
+        for name, unit, read in ROWS
+    ]
     head = ("Quantity", *(name for name, _ in columns), "Unit")
     said = [entry for entry in rows if set(entry[1:-1]) != {"–"}]
     return table(head, said, "The step in numbers", range(1, len(columns) + 1), wide=True)
+
+
+def _unit(name: str) -> Markup:
+    return tag("span", name, class_="unit")
 
 
 def _value(step: Any, read: Callable[[Any], float]) -> str:

@@ -95,7 +95,7 @@ def _torques(plan: Any, shown: Sequence[Source]) -> Iterator[Panel]:
     )
     yield Panel(
         "drive",
-        "Torque of the CMG about the edge",
+        "CMG torque about the edge",
         "−h δ′ o·r [N m]",
         (*driven, weight),
         note="Above the dotted line it speeds the body up.",
