@@ -11,7 +11,7 @@ from nullmotion.compile.loop import Loop
 from nullmotion.compile.loop_ir import LoopWriter
 from nullmotion.compile.loop_trace import cut, trace_loop
 
-_WIDE = 1200  # operations of a step; above, two vectors spill: design/vector_width.py
+_WIDE = 2500  # operations of a step; above, two vectors spill: design/vector_width.py
 LOOP_TYPES = (ctypes.c_void_p,) * 5 + (ctypes.c_int64,) * 9
 
 
