@@ -2,8 +2,8 @@
 
 Two hide the latency of small loops and of long chains (singular values: up to 1.6 times faster); in
 large loops their values no longer fit the registers. Each line: the operations of a loop, and the
-time of a run's step with one vector and with two (CPU time, one thread). From about 2,500 operations
-on, one was never slower.
+the time of a run's step with one vector and with two (CPU time, one thread). From about 2,500
+operations on, one was never slower.
 """
 
 from __future__ import annotations
