@@ -1,7 +1,7 @@
 """From how many operations a step on two vectors side by side are slower than one.
 
 Two hide the latency of small loops and of long chains (singular values: up to 1.6 times faster); in
-large loops their values no longer fit the registers. Each line: the operations of a loop, and the
+large loops their values no longer fit the registers. Each line: the operations of a loop, and
 the time of a run's step with one vector and with two (CPU time, one thread). From about 2,500
 operations on, one was never slower.
 """
