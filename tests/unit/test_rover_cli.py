@@ -133,6 +133,7 @@ def test_a_versine_that_cannot_be_made_is_named(cli, tmp_path, rate, outcome):
 # --- a run ---
 
 
+@pytest.mark.slow
 def test_a_run_is_written(ran):
     folder, out = ran
     tables = {"plan", "initialise", "closed_loop", "landing"}
