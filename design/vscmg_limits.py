@@ -1,7 +1,7 @@
 """How small the motors of a startup may be: who settles, under pairs of limits.
 
-The satellite of the scenario `vscmg-startup`, 24 random attitudes and gimbal angles for each pair. Prints
-the share that settles and the median time from which the attitude stays within 1.1 deg.
+The satellite of the scenario `vscmg-startup`, 24 random attitudes and gimbal angles for each pair.
+Prints the share that settles and the median time from which the attitude stays within 1.1 deg.
 """
 
 from __future__ import annotations

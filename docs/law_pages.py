@@ -41,6 +41,9 @@ print(f"off-axis torque, peak: {found['max_off_axis_torque_fraction']:.4f} of th
 print(f"largest rate step: {found['max_rate_step_rad_s']:.3f} rad/s")
 ```
 """
+_WHEELS = _EXAMPLE.replace("drives a pyramid", "drives a pyramid of variable-speed CMGs").replace(
+    '{"law.name": "NAME"}', '{"law.name": "NAME", "array.wheel_inertia_kg_m2": 0.01}'
+)
 _RAMP = """It does not steer the pyramid. From zero momentum, constant torque drives a box-90
 towards its envelope; the status says what did not hold on the way.
 
@@ -166,6 +169,8 @@ def _needs_values(law: type[Law]) -> bool:
 
 
 def _example(law: type[Law]) -> str:
+    if law.turns_wheels:
+        return _WHEELS.replace("NAME", law.name)
     for array, text in ((layouts.pyramid(), _EXAMPLE), (layouts.box90(), _RAMP)):
         if not _needs_values(law) and not law().supports(array):
             return text.replace("NAME", law.name)

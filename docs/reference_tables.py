@@ -14,7 +14,14 @@ from nullmotion import guarantee, layouts, metrics, papers
 from nullmotion.compile import elementary
 from nullmotion.metrics.base import PLAIN
 from nullmotion.plan import costs
-from nullmotion.scenario import library_names, load_scenario, schema, schema_spacecraft, sections
+from nullmotion.scenario import (
+    library_names,
+    load_scenario,
+    schema,
+    schema_spacecraft,
+    schema_vscmg,
+    sections,
+)
 from nullmotion.spacecraft import controllers
 
 _SECTIONS: dict[str, type[schema.Section]] = {
@@ -27,6 +34,7 @@ _SECTIONS: dict[str, type[schema.Section]] = {
     "[spacecraft]": schema_spacecraft.SpacecraftSection,
     "[controller]": schema_spacecraft.ControllerSection,
     "[servo]": schema_spacecraft.ServoSection,
+    "[vscmg]": schema_vscmg.VscmgSection,
     "[sensors]": schema_spacecraft.SensorsSection,
     "[disturbance]": schema_spacecraft.DisturbanceSection,
     "[desaturation]": schema_spacecraft.DesaturationSection,

@@ -1,4 +1,4 @@
-"""Spin up variable-speed CMGs from rest while the attitude is held, with motors of limited torque."""
+"""Spin variable-speed CMGs up from rest while the attitude is held, motors limited."""
 
 import numpy as np
 

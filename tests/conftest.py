@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import gc
+import signal
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as a shell starts what runs behind it
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_sessionstart() -> None:
@@ -28,7 +32,7 @@ def slew() -> Callable[..., Any]:
     from nullmotion import laws, layouts, metrics, sim, spacecraft
     from nullmotion.spacecraft import controllers
 
-    measured = tuple(metrics.get(name)() for name in metrics.names())
+    measured = tuple(metrics.get(name)() for name in metrics.applicable(True))
 
     def fly(**changes: Any) -> Any:
         setup = {

@@ -35,6 +35,7 @@ _MODULES = {
     "laws": "nullmotion.laws",
     "ops": "nullmotion.ops",
     "plan": "nullmotion.plan",
+    "rover": "nullmotion.rover",
     "singular_lines": "nullmotion.singular_lines",
     "singularity": "nullmotion.singularity",
     "sizing": "nullmotion.sizing",

@@ -281,6 +281,7 @@ def test_the_textbook_s_craft_under_given_torques() -> None:
     np.testing.assert_array_less(1e-4, misread.off(other))
 
 
+@pytest.mark.slow
 def test_the_textbook_s_craft_with_gimbal_rate_loops() -> None:
     """Larger motions: loops at 10 rad/s hold them near the same path, a minute at 0.01 s."""
     end = ours(SERVED, 60.0)
@@ -289,6 +290,7 @@ def test_the_textbook_s_craft_with_gimbal_rate_loops() -> None:
     np.testing.assert_array_less(end.off(theirs(SERVED, 60.0)), 1e-8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("craft", "far"), [(AGILE, 1e-7), (PICO, 1e-9)], ids=["agile", "pico"])
 def test_agile_craft_differ_by_the_steps_alone(craft: Craft, far: float) -> None:
     """A hundred N m s at 1 rad/s, and a pico-satellite: what differs falls as dt^4 does."""

@@ -72,7 +72,7 @@ BAD = [  # line replaced, its replacement, line number, key, what the message mu
     ('name = "sr"', 'name = "sr"\nperiod_s = 0.015', 10, "law.period_s", "whole multiple"),
     ('name = "sr"', 'name = "sr"\ndelay_s = -0.01', 10, "law.delay_s", "at least 0"),
     ("hdot_Nm = [1.0, 0.0, 0.0]", "hdot_Nm = [1.0, 0.0]", 11, "mission.hdot_Nm", "3 numbers"),
-    ("hdot_Nm = [1.0, 0.0, 0.0]", 'kind = "startup"', 11, "mission.kind", "'momentum-rate'"),
+    ("hdot_Nm = [1.0, 0.0, 0.0]", 'kind = "spin"', 11, "mission.kind", "'momentum-rate'"),
     ("hdot_Nm = [1.0, 0.0, 0.0]", 'profile = "no.csv"', 11, "mission.profile", "existing CSV"),
     ("dt_s = 0.01", "dt_s = 2.0", 13, "simulation.dt_s", "duration_s"),
     ("dt_s = 0.01", "dt_s = 0", 13, "simulation.dt_s", "above 0"),

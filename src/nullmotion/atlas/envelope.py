@@ -75,9 +75,7 @@ def omnidirectional(
     if found.convex:
         return _bounds(found, lower, upper, upper * u, _PROVEN, start)
     cells = envelope_cells.ball(found.m, upper, len(found.ring_of))
-    radius = least_unreachable(
-        found, cells, upper * u, _checked(tolerance), progress, budget
-    )
+    radius = least_unreachable(found, cells, upper * u, _checked(tolerance), progress, budget)
     return _from_radius(found, radius, start)
 
 

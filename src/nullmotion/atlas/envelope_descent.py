@@ -68,9 +68,7 @@ def distances(rings: Rings, starts: Starts, h: np.ndarray) -> np.ndarray:
     return least
 
 
-def smallest_near(
-    rings: Rings, starts: Starts, h: np.ndarray, margin: float
-) -> np.ndarray:
+def smallest_near(rings: Rings, starts: Starts, h: np.ndarray, margin: float) -> np.ndarray:
     """Return a momentum (m,) as small as found from h on that stays ``margin`` away from R.
 
     Args:

@@ -16,6 +16,7 @@ from nullmotion.cli import (
     paper,
     plan,
     rerun,
+    rover,
     run,
     size,
 )
@@ -62,6 +63,7 @@ app.command("plan")(plan.plan)
 app.command("guarantee")(guarantee.guarantee)
 app.add_typer(design.app, name="design")
 app.command("size")(size.size)
+app.add_typer(rover.app, name="rover")
 app.command("list")(catalogue.list_)
 app.command("paper")(paper.paper)
 

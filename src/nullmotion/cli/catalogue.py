@@ -18,6 +18,7 @@ KINDS = (
     "costs",
     "papers",
     "scenarios",
+    "rovers",
 )
 
 
@@ -25,7 +26,7 @@ def list_(
     kind: Annotated[str, typer.Argument(metavar="|".join(KINDS))],
     as_json: Annotated[bool, typer.Option("--json", help="As JSON.")] = False,
 ) -> None:
-    """List the laws, layouts, constraints, controllers, metrics, costs, papers or scenarios."""
+    """List laws, layouts, constraints, controllers, metrics, costs, papers, scenarios or rovers."""
     from nullmotion.errors import UnknownNameError
 
     if kind not in KINDS:

@@ -25,6 +25,11 @@ _ATTITUDE = (
     ("Least sigma_min", "min_sigma_min", screen.number),
     ("Gimbal travel [rad]", "gimbal_travel_rad", screen.number),
 )
+_STARTUP = (
+    *_ATTITUDE[:2],
+    ("Wheels settled [s]", "wheel_settling_s", screen.number),
+    ("Wheel error [%]", "final_wheel_speed_error", screen.percent),
+)
 _VARIED = (
     ("time to stop [s]", "stopped_at_s", screen.number),
     ("off-axis torque, peak [%]", "max_off_axis_torque_fraction", screen.percent),
@@ -35,6 +40,12 @@ _VARIED_ATTITUDE = (
     ("final pointing error [deg]", "final_pointing_error_deg", screen.number),
     ("least sigma_min", "min_sigma_min", screen.number),
 )
+_VARIED_STARTUP = (
+    *_VARIED_ATTITUDE[:2],
+    ("wheels settled [s]", "wheel_settling_s", screen.settling),
+    ("final wheel speed error [%]", "final_wheel_speed_error", screen.percent),
+    *_VARIED_ATTITUDE[2:],
+)
 _MOST_VALUES = 12  # of a varied key in a table on the screen
 
 
@@ -42,16 +53,17 @@ def tables(comparison: Comparison) -> list[Any]:
     """Return the tables of a comparison: one, or one a metric over the varied values."""
     if comparison.varied is None:
         return [_single(comparison)]
-    chosen = _VARIED_ATTITUDE if _turns(comparison) else _VARIED
+    chosen = _by_kind(comparison, _VARIED, _VARIED_ATTITUDE, _VARIED_STARTUP)
     return [_varied(comparison, *column) for column in chosen]
 
 
-def _turns(comparison: Comparison) -> bool:
-    return comparison.scenario.mission.kind == "attitude"
+def _by_kind(comparison: Comparison, momentum: Any, attitude: Any, startup: Any) -> Any:
+    kinds = {"attitude": attitude, "startup": startup}
+    return kinds.get(comparison.scenario.mission.kind, momentum)
 
 
 def _single(comparison: Comparison) -> Any:
-    columns = _ATTITUDE if _turns(comparison) else _COLUMNS
+    columns = _by_kind(comparison, _COLUMNS, _ATTITUDE, _STARTUP)
     required = comparison.scenario.requirements is not None
     head = ["Case", "Parameters", "Result", *(title for title, _, _ in columns)]
     rows = [_row(case, columns) for case in comparison.cases]
@@ -83,8 +95,10 @@ def _caption(comparison: Comparison) -> str:
     ]
     stuck = any(event.kind == "stuck" for event in comparison.scenario.events)
     counted = " A stuck CMG does not count." if stuck else ""
-    measure = f"{stops}sigma_min is that of A over the mean momentum.{counted}"
-    return " ".join([measure, *refused])
+    measure = f"sigma_min is that of A over the mean momentum.{counted}"
+    if comparison.scenario.mission.kind == "startup":
+        measure = "Wheel error: how far a wheel's speed is from that of the design, at the end."
+    return " ".join([f"{stops}{measure}", *refused])
 
 
 def _row(case: Case, columns: Sequence[Any]) -> list[str]:
@@ -107,8 +121,7 @@ def result(case: Case) -> str:
     if "non-finite" in run.status:
         return "not finite"
     if run.q_BN is not None and run.stopped_at_s is None:
-        settled = case.metrics.get("settling_time_s")
-        return screen.NOT_SETTLED if settled != settled else "settled"
+        return _settled(case)
     since = None if run.q_BN is not None else stuck_since(run)  # type: ignore[arg-type]
     if since is not None:
         return f"stuck from {since:.3g} s"
@@ -117,6 +130,15 @@ def result(case: Case) -> str:
         if run.stopped_at_s is None
         else f"stopped {run.stopped_at_s:.4g} s"
     )
+
+
+def _settled(case: Case) -> str:
+    """Return whether an attitude settled, and in a startup the wheels."""
+    attitude = case.metrics.get("settling_time_s")
+    if attitude != attitude:
+        return screen.NOT_SETTLED
+    wheels = case.metrics.get("wheel_settling_s")
+    return "wheels off speed" if wheels != wheels else "settled"
 
 
 def _varied(comparison: Comparison, title: str, key: str, written: Any) -> Any:

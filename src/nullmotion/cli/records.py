@@ -9,6 +9,7 @@ from nullmotion import guarantee as constraint_package
 from nullmotion import laws as law_package
 from nullmotion import metrics as metric_package
 from nullmotion.array import layouts as layout_package
+from nullmotion.cli.rover_records import rovers as rovers
 from nullmotion.plan import costs as cost_package
 from nullmotion.scenario.load import library_names, load_scenario
 from nullmotion.scenario.sections import file_key

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nullmotion.cli import options, screen
+from nullmotion.cli import options, screen, wheel_rows
 
 if TYPE_CHECKING:
     from nullmotion.scenario import Scenario
@@ -47,12 +47,13 @@ def write(
 ) -> None:
     """Write all files of the run, the report included."""
     from nullmotion.report.run import run_report
-    from nullmotion.scenario import requirements, store
+    from nullmotion.scenario import requirements, store, vscmg_summary
 
     def report(path: Path) -> Any:
         text = scenario.source.effective_text()
         kept = requirements.evaluate(scenario, trajectory.summary())
-        return run_report(trajectory, path, scenario.title, text, kept)  # type: ignore[arg-type]
+        wheels = vscmg_summary.summary(trajectory, scenario)
+        return run_report(trajectory, path, scenario.title, text, kept, wheels)  # type: ignore[arg-type]
 
     store.write(trajectory, scenario, target, csv=csv, law_file=law_file, report=report)
 
@@ -66,6 +67,7 @@ def show(trajectory: Trajectory, scenario: Scenario) -> None:
         ("Stopped at", "-" if stopped is None else f"{stopped:.6g} s"),
         ("Stop reason", trajectory.stop_reason),
         *of_its_kind(found),
+        *(wheel_rows.rows(trajectory, scenario) if trajectory.wheel_speed is not None else []),
         *_requirements(scenario, found),
         ("Status", ", ".join(found["status"])),
         ("Backend", " ".join(filter(None, (trajectory.backend, trajectory.instruction_set)))),

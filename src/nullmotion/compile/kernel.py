@@ -11,6 +11,7 @@ from nullmotion.compile.loop import Loop
 from nullmotion.compile.loop_ir import LoopWriter
 from nullmotion.compile.loop_trace import cut, trace_loop
 
+_WIDE = 2500  # operations of a step; above, two vectors spill: design/vector_width.py
 LOOP_TYPES = (ctypes.c_void_p,) * 5 + (ctypes.c_int64,) * 9
 
 
@@ -32,9 +33,14 @@ class LoopKernel:
         """Trace and compile a loop."""
         machine = llvm.host()
         self.loop = loop
-        self.width = width or machine.batch_lanes
         traced = trace_loop(loop, recording, machine.fma)
         self.traced = traced
+        self.operations = sum(
+            cut(p.program, range(len(p.program.inputs)), traced.live).operations
+            for p in traced.pieces
+        )
+        wide = machine.batch_lanes if self.operations <= _WIDE else machine.lanes
+        self.width = width or wide
         writer = LoopWriter(loop, traced, self.width)
         self.source = writer.source()
         self._machine = llvm.machine(self.source, level)
@@ -43,10 +49,6 @@ class LoopKernel:
         self.flags = traced.flags
         self.outputs = len(traced.outputs.outputs)
         self.records = sum(p.records for p in traced.pieces)
-        self.operations = sum(
-            cut(p.program, range(len(p.program.inputs)), traced.live).operations
-            for p in traced.pieces
-        )
 
     def run(
         self,

@@ -15,6 +15,7 @@ from nullmotion.vscmg.hardware import torque_matrix
 from nullmotion.vscmg.weighted import Command, Weighted
 
 Goal = Literal["momentum", "equalise", "power", "none"]
+_RATE = 0.07  # 1/s: a startup in a minute
 _STILL = 1e-30  # (N m s)^2
 _NEAR = 0.05  # det(C_T C_T^T) below which symmetry may hide the way out
 _TURN = np.pi * (3.0 - np.sqrt(5.0))  # golden angle: no two gimbals are nudged alike
@@ -50,10 +51,12 @@ class VscmgWeighted(Law):
         k_d: In s_w.
         k_g: In s_g.
         epsilon: In s_w.
-        k_m: Gain of the wheels' goal [1/(kg m^2 s)]; mu falls as e^(-I_W k_m t).
+        k_m: Gain of the wheels' goal [1/(kg m^2 s)]; mu falls as e^(-I_W k_m t). None for
+            0.07 / I_W: to 2 % in a minute.
         wheel_speed_rad_s: Omega_d; None for h0 / I_W of the array as it was designed.
         goal: What null motion does to the wheels: ``momentum`` brings each to Omega_d, ``equalise``
-            to their mean, ``power`` gives `power_W` to them (negative: takes it), ``none`` nothing.
+            to their mean, ``power`` gives `power_W` to them (negative: takes it), ``none`` keeps
+            their speeds.
         power_W: Power into the wheels [W].
         damping: Of the inverse in Eq 43, as above.
         nudge: Null motion [rad/s] at a singular state, a different one for each gimbal: where
@@ -80,7 +83,7 @@ class VscmgWeighted(Law):
     k_d: float = 10.0
     k_g: float = 1.0
     epsilon: float = 0.1
-    k_m: float = 10.0
+    k_m: float | None = None
     wheel_speed_rad_s: float | None = None
     goal: Goal = "momentum"
     power_W: float = 0.0
@@ -120,13 +123,12 @@ class VscmgWeighted(Law):
         weights = self.W_Omega0 * ops.exp(-self.lambda1 * det) * alive
         split = Weighted(Q[:, :n], Q[:, n:], Command(weights, np.full(n, self.W_delta)))
         low, high = self._bounds(array, obs)
-        command = split.ranged(obs.hdot)
-        if not self.as_published:
-            command = command.scaled(command.share_within(low, high))
-        goal = alive * self._acceleration(array, obs, state) - command.wheel
+        torque = obs.hdot
+        command = split.ranged(torque) if self.as_published else split.within(torque, low, high)
+        goal = self._acceleration(array, obs, state, alive) - command.wheel
         s_w = _sech(1.0 / (self.k_d * det + self.epsilon))
         turn = self._climb(C_T, C_W, gram, det)
-        null = split.null(goal, turn, self.damping / (s_w * s_w))
+        null = split.null(goal, turn, s_w, self.damping)
         if not self.as_published:
             null = null.scaled(null.share_within(low.plus(command, -1.0), high.plus(command, -1.0)))
         whole = command.plus(null)
@@ -143,15 +145,16 @@ class VscmgWeighted(Law):
         near = ops.maximum(1.0 - det * (1.0 / _NEAR), 0.0)
         return climb + (self.nudge * near * near) * np.cos(_TURN * np.arange(len(slope)))
 
-    def _acceleration(self, array: CmgArray, obs: Observation, design: Any) -> Any:
+    def _acceleration(self, array: CmgArray, obs: Observation, design: Any, alive: Any) -> Any:
         """Return the wheel accelerations that null motion aims at [rad/s^2], (n,)."""
-        inertia, speed = array.flywheels.inertia, obs.wheel_speed
-        gain = self.k_m * inertia
+        inertia, speed = alive * array.flywheels.inertia, obs.wheel_speed
+        rate = alive * _RATE if self.k_m is None else self.k_m * inertia
         if self.goal == "momentum":
             aim = design if self.wheel_speed_rad_s is None else self.wheel_speed_rad_s
-            return gain * (aim - speed)
-        if self.goal == "equalise":
-            return gain * (sum(speed) * (1.0 / array.n) - speed)
+            return rate * (aim - speed)
+        if self.goal == "equalise":  # the mean that leaves the mean of the speeds as it is
+            mean = (inertia @ speed) / ops.maximum(sum(inertia), _STILL)
+            return rate * (mean - speed)
         if self.goal == "power":
             h = inertia * speed
             return (self.power_W / ops.maximum(h @ h, _STILL)) * h

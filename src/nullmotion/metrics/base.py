@@ -67,6 +67,11 @@ class Sample:
         return self.array if self.turning is None else self.turning
 
     @cached_property
+    def design_speed(self) -> Any:
+        """Wheel speeds that the array was designed for [rad/s], (n,); 0 for a stuck CMG."""
+        return self.working.h0 / self.array.flywheels.inertia
+
+    @cached_property
     def jacobian(self) -> Any:
         """A at delta [N m s/rad], (m, n)."""
         return self.array.jacobian(self.delta)
@@ -121,6 +126,7 @@ class Metric:
         reductions: How a run sums it up.
         needs_rates: True if it has no meaning at the end of a run, where no rate applies.
         needs_body: True if it has no meaning without a spacecraft.
+        needs_wheels: True if it has no meaning where wheel speeds are constant.
     """
 
     name: ClassVar[str] = ""
@@ -130,6 +136,7 @@ class Metric:
     reductions: ClassVar[tuple[Reduction, ...]] = ("min", "final")
     needs_rates: ClassVar[bool] = False
     needs_body: ClassVar[bool] = False
+    needs_wheels: ClassVar[bool] = False
 
     def of(self, sample: Sample) -> Any:
         """Return the metric at one sample."""

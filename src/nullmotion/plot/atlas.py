@@ -122,7 +122,9 @@ def _flat(axes: Any, scene: Scene, a: int, b: int, title: str) -> None:
 
     for ball in scene.balls:
         dash = style.LINE_STYLES[ball.dash]
-        circle = Circle(scene.middle[[a, b]], ball.radius, fill=False, color=ball.colour, ls=dash, lw=1.1)
+        circle = Circle(
+            scene.middle[[a, b]], ball.radius, fill=False, color=ball.colour, ls=dash, lw=1.1
+        )
         axes.add_patch(circle)
     for motion in scene.motions:
         dash = style.LINE_STYLES[motion.dash]

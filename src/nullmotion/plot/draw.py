@@ -30,9 +30,12 @@ def draw(panel: Panel, axes: Any, legend: bool = True) -> None:
             markersize=3,
         )
     for level in panel.levels:
-        axes.axhline(level.value, color=palette.QUIET, linewidth=0.9, linestyle=(0, (2, 2)))
+        dash: Any = (0, (2, 2)) if level.dash == "dot" else style.LINE_STYLES[level.dash]
+        axes.axhline(level.value, color=palette.QUIET, linewidth=0.9, linestyle=dash)
         if level.label:
             _name(axes, level.value, level.label)
+    for start, end in panel.spans:
+        axes.axvspan(start, end, color=palette.SHADE, linewidth=0.4, zorder=0)
     for mark in panel.marks:
         axes.axvline(mark.at, color=palette.ALERT, linewidth=0.8, linestyle=(0, (1, 1.5)))
         if mark.label:

@@ -8,7 +8,12 @@ from typing import Any
 
 from nullmotion.plot.view import Mark, Panel, Run
 
-TOLD = {"stuck": "stuck", "slow": "slow", "spin-down": "spinning down"}
+TOLD = {
+    "stuck": " stuck",
+    "slow": " slow",
+    "spin-down": " spinning down",
+    "wheel-dead": "'s wheel motor dead",
+}
 _LETTER = 0.02  # width of a letter over that of a chart, on a telephone
 _LATE = 0.6  # share of the time from which a mark's name runs to the left
 
@@ -21,7 +26,7 @@ def happened(run: Run) -> list[Any]:
 
 def name(event: Any) -> str:
     """Return what happened to which CMG, counted from 1."""
-    return f"CMG {event.cmg + 1} {TOLD[event.kind]}"
+    return f"CMG {event.cmg + 1}{TOLD[event.kind]}"
 
 
 def found_at(event: Any) -> float:

@@ -17,7 +17,9 @@ def run_figure(trajectory: Run, path: str | Path, title: str = "") -> Path:
 
     Output torque, norm of the momentum, gimbal rates, gimbal angles, effective residual
     momentum, singularity measures. Of an attitude run: pointing error, attitude, body rate,
-    output torque, gimbal rates, gimbal angles, singularity measures, motor torque.
+    output torque, gimbal rates, gimbal angles, singularity measures, motor torque. Where wheel
+    speeds change: pointing error, wheel speeds, wheel torques, gimbal rates, body rate, output
+    torque, attitude, gimbal angles.
 
     Args:
         trajectory: The run.

@@ -12,13 +12,17 @@ from nullmotion.plot.events import marked
 from nullmotion.plot.panels import NORMALISED, angles
 from nullmotion.plot.parts import limited
 from nullmotion.plot.quantities import (
+    finite,
     motor_limits,
     of_attitude,
     rate_limits,
     steady_direction,
     torque_fractions,
+    turns_wheels,
+    wheel_tolerance,
 )
 from nullmotion.plot.view import Case, Curve, Level, Panel, Run
+from nullmotion.plot.wheels import largest_wheel_error
 
 Series = Callable[[Run], np.ndarray]
 
@@ -106,6 +110,32 @@ def largest_motor_torque(cases: Sequence[Case]) -> Panel:
     return limited(panel, sorted(limits), "N m")
 
 
+def wheel_error(cases: Sequence[Case]) -> Panel:
+    """Largest relative error of a wheel's speed at each time."""
+    ran = [case.trajectory for _, case in shown(cases) if turns_wheels(case.trajectory)]
+    curves = overlay(cases, largest_wheel_error) if ran else ()
+    levels = {100.0 * v for v in map(wheel_tolerance, ran) if v is not None}
+    lines = tuple(Level(v, f"tolerance {v:.3g} %") for v in sorted(levels))
+    title, y_title = "Largest wheel speed error", "Share of design speed [%]"
+    return Panel("wheel_error", title, y_title, curves, lines, log=True)
+
+
+def largest_wheel_torque(cases: Sequence[Case]) -> Panel:
+    """Largest torque of a wheel motor at each time."""
+    ran = [case.trajectory for _, case in shown(cases) if turns_wheels(case.trajectory)]
+    curves = overlay(cases, _largest_wheel_torque) if ran else ()
+    limits = {v for run in ran for v in finite(run.setup.array.flywheels.torque_limit)}
+    panel = Panel("wheel_torque", "Largest wheel motor torque", "max |torque| [N m]", curves)
+    return limited(panel, sorted(limits), "N m") if curves else panel
+
+
+def _largest_wheel_torque(run: Run) -> np.ndarray:
+    if not turns_wheels(run):
+        return np.full(len(run.t), np.nan)
+    largest: np.ndarray = np.max(np.abs(run.wheel_motor_torque), axis=1)
+    return largest
+
+
 OVERLAYS = (momentum_along, sigma_min, off_axis, largest_rate)
 ATTITUDE_OVERLAYS = (
     pointing_error,
@@ -114,6 +144,8 @@ ATTITUDE_OVERLAYS = (
     momentum_norm,
     largest_rate,
     largest_motor_torque,
+    wheel_error,
+    largest_wheel_torque,
 )
 
 

@@ -13,6 +13,7 @@ INK = "#1b1f24"
 QUIET = "#5b6570"
 GRID = "#e3e6ea"
 ALERT = "#a3230a"
+SHADE = "#f6d9c9"
 
 COLOURS = ("#0072b2", "#d55e00", "#008a65", "#b0508a", "#b87800", "#1b1f24", "#3b9bd8")
 DASHES = ("solid", "dash", "dot", "dashdot", "longdash")

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from nullmotion.plot import attitude, palette
+from nullmotion.plot import attitude, palette, wheels
 from nullmotion.plot.events import marked
 from nullmotion.plot.parts import bundle, limited, with_norm
 from nullmotion.plot.quantities import (
@@ -17,6 +17,7 @@ from nullmotion.plot.quantities import (
     rate_limits,
     stop_level,
     torque_fractions,
+    turns_wheels,
 )
 from nullmotion.plot.view import Curve, Level, Panel, Run
 
@@ -30,7 +31,8 @@ def torque(run: Run) -> Panel:
         hue = palette.colour(i)
         curves.append(Curve(f"{name} given", run.t, run.torque[:, i], hue))
         curves.append(Curve(f"{name} asked", run.t, run.hdot[:, i], hue, "dash", 1.2))
-    note = "Rate of the array's momentum, A·δ̇; the vehicle gets its negative."
+    given = "A·δ̇ + C_W·I·Ω̇" if turns_wheels(run) else "A·δ̇"
+    note = f"Rate of the array's momentum, {given}; the vehicle gets its negative."
     return Panel("torque", "Torque asked and given", "Torque [N m]", tuple(curves), note=note)
 
 
@@ -116,19 +118,45 @@ ATTITUDE_PANELS = (
     attitude.motor_torque,
     attitude.motor_power,
 )
+WHEEL_PANELS = (
+    attitude.pointing_error,
+    wheels.wheel_speeds,
+    wheels.wheel_torques,
+    rates,
+    attitude.body_rate,
+    torque,
+    attitude.euler_angles,
+    angles,
+    wheels.wheel_errors,
+    measures,
+    momentum,
+    attitude.inertial_momentum,
+    attitude.motor_torque,
+    wheels.lyapunov,
+)
+WHEELS_ALONE = (wheels.wheel_speeds, wheels.wheel_torques)  # without a spacecraft
 LITERATURE_PANELS = (torque, momentum_norm, rates, angles, residual, measures)
 ATTITUDE_FIGURE = (*ATTITUDE_PANELS[:7], attitude.motor_torque)
+WHEEL_FIGURE = WHEEL_PANELS[:8]
 
 
 def run_panels(run: Run) -> list[Panel]:
     """Return all charts of a run that have something to show."""
-    return _shown(ATTITUDE_PANELS if of_attitude(run) else RUN_PANELS, run)
+    if not turns_wheels(run):
+        return _shown(ATTITUDE_PANELS if of_attitude(run) else RUN_PANELS, run)
+    made = _shown(WHEEL_PANELS if of_attitude(run) else (*WHEELS_ALONE, *RUN_PANELS), run)
+    return made + marked(wheels.learned(run), run)
 
 
 def figure_panels(run: Run) -> list[Panel]:
     """Return the charts that the field shows of a run: of its attitude, or of its torque."""
+    if turns_wheels(run):
+        return _shown(
+            WHEEL_FIGURE if of_attitude(run) else (*WHEELS_ALONE, *LITERATURE_PANELS), run
+        )
     return _shown(ATTITUDE_FIGURE if of_attitude(run) else LITERATURE_PANELS, run)
 
 
 def _shown(made: Sequence[Callable[[Run], Panel]], run: Run) -> list[Panel]:
-    return marked([panel for panel in (make(run) for make in made) if panel.curves], run)
+    panels = marked([panel for panel in (make(run) for make in made) if panel.curves], run)
+    return wheels.shaded(panels, run)

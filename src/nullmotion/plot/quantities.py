@@ -102,8 +102,23 @@ def rate_limits(run: Run) -> list[float]:
 
 def motor_limits(run: Run) -> list[float]:
     """Return the different finite torque limits of the gimbal motors [N m], ascending."""
-    servo = getattr(run.setup, "servo", None)
+    servo, units = getattr(run.setup, "servo", None), getattr(run.setup, "units", None)
+    if units is not None and units.drive == "torque":
+        return finite(units.gimbal_torque_limit)
     return [] if servo is None else finite(servo.torque_limit)
+
+
+def turns_wheels(run: Run | None) -> bool:
+    """Return whether a run's wheel speeds change."""
+    return getattr(run, "wheel_speed", None) is not None
+
+
+def wheel_tolerance(run: Run) -> float | None:
+    """Return the relative error that counts as a wheel at its speed; None if not measured."""
+    for metric in getattr(run.setup, "metrics", ()):
+        if metric.name == "wheel_settling_s":
+            return float(metric.tolerance)
+    return None
 
 
 def of_attitude(run: Run | None) -> bool:

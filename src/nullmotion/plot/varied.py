@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from nullmotion.plot import palette
-from nullmotion.plot.quantities import of_attitude
+from nullmotion.plot.quantities import of_attitude, turns_wheels
 from nullmotion.plot.view import Curve, Panel
 
 
@@ -33,14 +33,19 @@ VARIED_METRICS = (
     Varied("min_sigma_min", "Least sigma_min", "sigma_min [-]"),
 )
 VARIED_ATTITUDE = (
-    Varied(
-        "settling_time_s", "Settling time", "Time [s]", note="No point where a run did not settle."
-    ),
+    Varied("settling_time_s", "Settling time", "Time [s]", note=_GAP),
     Varied("final_pointing_error_deg", "Pointing error at the end", "Error [deg]", log=True),
     Varied("max_motor_torque_Nm", "Largest gimbal motor torque", "Torque [N m]"),
     Varied("rate_saturated_s", "Rate-saturated time", "Time [s]"),
     Varied("min_sigma_min", "Least sigma_min", "sigma_min [-]"),
     Varied("gimbal_travel_rad", "Gimbal travel", "Travel [rad]"),
+)
+VARIED_WHEELS = (
+    *VARIED_ATTITUDE[:2],
+    Varied("wheel_settling_s", "Settling time of the wheels", "Time [s]", note=_GAP),
+    Varied("final_wheel_speed_error", "Wheel speed error at the end", "Error [%]", 100.0, log=True),
+    Varied("max_wheel_torque_Nm", "Largest wheel torque", "Torque [N m]"),
+    *VARIED_ATTITUDE[2:],
 )
 
 
@@ -59,8 +64,11 @@ def varied_panels(comparison: Any) -> list[Panel]:
         return []
     ticks = tick_names(comparison.cases)
     laws = series(comparison.cases, ticks)
-    attitude = any(of_attitude(case.trajectory) for case in comparison.cases)
-    chosen = VARIED_ATTITUDE if attitude else VARIED_METRICS
+    runs = [case.trajectory for case in comparison.cases]
+    attitude = any(of_attitude(run) for run in runs)
+    chosen: tuple[Varied, ...] = VARIED_ATTITUDE if attitude else VARIED_METRICS
+    if attitude and any(turns_wheels(run) for run in runs):
+        chosen = VARIED_WHEELS
     made = [_panel(key, ticks, laws, entry) for entry in chosen]
     return [panel for panel in made if panel.curves]
 

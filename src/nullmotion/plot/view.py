@@ -15,7 +15,8 @@ import numpy as np
 class Run(Protocol):
     """What a picture reads of a trajectory (`nullmotion.sim.Trajectory` is one).
 
-    From ``q_BN`` on only runs that turn a spacecraft have it (`quantities.of_attitude`).
+    From ``q_BN`` on only runs that turn a spacecraft have it (`quantities.of_attitude`), from
+    ``wheel_speed`` on only runs whose wheel speeds change (`quantities.turns_wheels`).
     """
 
     t: np.ndarray
@@ -38,6 +39,11 @@ class Run(Protocol):
     pointing_error: Any
     inertial_momentum: Any
     motor_torque: Any
+    wheel_speed: Any
+    wheel_acceleration: Any
+    wheel_motor_torque: Any
+    limited: Any
+    estimates: Any
 
 
 class Case(Protocol):
@@ -75,10 +81,17 @@ class Curve:
 
 @dataclass(frozen=True)
 class Level:
-    """A horizontal line with a name, such as a limit."""
+    """A horizontal line with a name, such as a limit.
+
+    Args:
+        value: Ordinate.
+        label: Its name; empty for none.
+        dash: One of `palette.DASHES`.
+    """
 
     value: float
     label: str
+    dash: str = "dot"
 
 
 @dataclass(frozen=True)
@@ -111,6 +124,7 @@ class Panel:
         ticks: Names of the abscissas 0, 1, 2, ... where these are no numbers.
         log: Whether the ordinate is logarithmic.
         marks: Instants.
+        spans: Stretches of the abscissa that are shaded, from and to.
     """
 
     key: str
@@ -123,3 +137,4 @@ class Panel:
     ticks: tuple[str, ...] = ()
     log: bool = False
     marks: tuple[Mark, ...] = ()
+    spans: tuple[tuple[float, float], ...] = ()

@@ -4,9 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from nullmotion.plot.quantities import final_error_deg, motor_limits, tolerance_deg
+from nullmotion.plot.quantities import (
+    final_error_deg,
+    motor_limits,
+    tolerance_deg,
+    turns_wheels,
+)
 from nullmotion.plot.view import Run
 from nullmotion.report.tiles import Tile, least_sigma
+from nullmotion.report.wheels import wheel_tiles
 from nullmotion.report.wording import number, percent, quantity
 
 
@@ -15,6 +21,7 @@ def attitude_tiles(run: Run) -> list[Tile]:
     made = [
         _settling(run),
         _error(run),
+        *wheel_tiles(run),
         _body_rate(run),
         _motor(run),
         _saturated(run),
@@ -52,7 +59,8 @@ def _motor(run: Run) -> Tile | None:
         return None
     limits = motor_limits(run)
     note = f"{percent(largest / limits[0])} % of the limit" if limits else "no limit set"
-    return Tile("Peak motor torque", number(largest, 3), "N m", note)
+    name = "Peak gimbal motor torque" if turns_wheels(run) else "Peak motor torque"
+    return Tile(name, number(largest, 3), "N m", note)
 
 
 def _saturated(run: Run) -> Tile | None:

@@ -8,23 +8,30 @@ from typing import Any
 import numpy as np
 
 from nullmotion.plot.events import told
-from nullmotion.plot.quantities import SINGULAR, USED_UP, motor_limits, sigma_min
+from nullmotion.plot.quantities import SINGULAR, USED_UP, motor_limits, sigma_min, turns_wheels
 from nullmotion.plot.view import Run
 from nullmotion.report.requirements import name, tally
+from nullmotion.report.wheels import wheel_findings
 from nullmotion.report.wording import number, percent
 
 
 def findings(
-    run: Run, requirements: Sequence[Mapping[str, Any]] = (), faults: bool = True
+    run: Run,
+    requirements: Sequence[Mapping[str, Any]] = (),
+    faults: bool = True,
+    wheels: Mapping[str, Any] | None = None,
 ) -> list[str]:
-    """Return sentences on faults, singular states, saturation and requirements.
+    """Return sentences on faults, singular states, saturation, wheels and requirements.
 
     Args:
         run: An attitude run.
         requirements: What `nullmotion.scenario.requirements.evaluate` returns.
         faults: Whether what was lost is said; not where the headline says it.
+        wheels: What `nullmotion.scenario.vscmg_summary.summary` returns.
     """
     said = [*([told(run)] if faults else []), *_singular(run), *_saturated(run)]
+    if turns_wheels(run):
+        said += wheel_findings(run, wheels)
     if requirements:
         said.append(_requirements(requirements))
     return [sentence for sentence in said if sentence]
@@ -45,11 +52,11 @@ def _singular(run: Run) -> Iterator[str]:
 
 def _saturated(run: Run) -> Iterator[str]:
     beyond = run.metrics.get("rate_saturated_s", 0.0)
-    if beyond > 0:
+    if beyond > 0 and not turns_wheels(run):  # there `wheel_findings` tells what was limited
         share = f"{percent(beyond / run.t[-1])} % of the run"
         yield f"The law asked for more than the rate limit for {number(beyond)} s ({share})"
     limits = motor_limits(run)
-    if limits:
+    if limits and run.setup.servo is not None:
         servo = np.broadcast_to(run.setup.servo.torque_limit, run.delta.shape[1])
         full = (np.abs(run.motor_torque) >= servo * (1 - 1e-9)).any(axis=1)
         if full.any():

@@ -37,22 +37,30 @@ def layout(panel: Panel) -> dict[str, Any]:
         "xaxis": {**_AXIS, **ticks, "title": {"text": escape(panel.x_title), "standoff": 6}},
         "yaxis": {**_AXIS, **y_axis},
         "shapes": [
-            *(_level_line(level.value) for level in panel.levels),
+            *(_shade(*span) for span in panel.spans),
+            *(_level_line(level) for level in panel.levels),
             *(_mark_line(mark.at) for mark in panel.marks),
         ],
         "annotations": [*names, *(_mark_name(mark) for mark in panel.marks if mark.label)],
     }
 
 
-def _level_line(value: float) -> dict[str, Any]:
-    line = {"color": palette.QUIET, "width": 1.2, "dash": "dot"}
+def _shade(start: float, end: float) -> dict[str, Any]:
+    line = {"color": palette.SHADE, "width": 0.5}
+    sides = {"x0": start, "x1": end, "y0": 0, "y1": 1}
+    fill = {"fillcolor": palette.SHADE, "line": line, "layer": "below"}
+    return {"type": "rect", "yref": "paper", **sides, **fill}
+
+
+def _level_line(level: Level) -> dict[str, Any]:
+    line = {"color": palette.QUIET, "width": 1.2, "dash": level.dash}
     return {
         "type": "line",
         "xref": "paper",
         "x0": 0,
         "x1": 1,
-        "y0": value,
-        "y1": value,
+        "y0": level.value,
+        "y1": level.value,
         "line": line,
     }
 

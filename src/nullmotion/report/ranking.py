@@ -49,6 +49,14 @@ ATTITUDE_COLUMNS = (
     Column("Gimbal travel [rad]", "gimbal_travel_rad", "low"),
 )
 
+WHEEL_COLUMNS = (
+    *ATTITUDE_COLUMNS[:2],
+    Column("Wheels at speed [s]", "wheel_settling_s", "low"),
+    Column("Final wheel speed error [-]", "final_wheel_speed_error", "low"),
+    Column("Peak wheel torque [N\u00a0m]", "max_wheel_torque_Nm", "low"),
+    *ATTITUDE_COLUMNS[2:],
+)
+
 _FLOOR = 1e-6  # differences below are rounding, not merit
 
 

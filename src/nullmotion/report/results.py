@@ -6,10 +6,17 @@ from collections.abc import Sequence
 from typing import Any, Literal, NamedTuple
 
 from nullmotion.plot.events import stuck
-from nullmotion.plot.quantities import of_attitude
+from nullmotion.plot.quantities import of_attitude, turns_wheels
 from nullmotion.plot.view import Case
 from nullmotion.report.markup import Markup, join, tag
-from nullmotion.report.ranking import ATTITUDE_COLUMNS, COLUMNS, Column, best, cell
+from nullmotion.report.ranking import (
+    ATTITUDE_COLUMNS,
+    COLUMNS,
+    WHEEL_COLUMNS,
+    Column,
+    best,
+    cell,
+)
 from nullmotion.report.requirements import of_case, tally
 from nullmotion.report.tables import table
 from nullmotion.report.verdict import status_words, verdict
@@ -99,6 +106,8 @@ def attitudes(cases: Sequence[Any]) -> bool:
 
 
 def _columns(cases: Sequence[Any]) -> tuple[Column, ...]:
+    if attitudes(cases) and any(turns_wheels(case.trajectory) for case in cases):
+        return WHEEL_COLUMNS
     return ATTITUDE_COLUMNS if attitudes(cases) else COLUMNS
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +12,7 @@ from nullmotion import rotation
 from nullmotion.plot.atlas_runs import run_scene
 from nullmotion.plot.events import told
 from nullmotion.plot.panels import run_panels
-from nullmotion.plot.quantities import of_attitude
+from nullmotion.plot.quantities import of_attitude, turns_wheels
 from nullmotion.plot.view import Run
 from nullmotion.report import page
 from nullmotion.report.atlas import Atlas
@@ -22,7 +24,10 @@ from nullmotion.report.requirements import Results, requirement_table
 from nullmotion.report.tables import metric_table
 from nullmotion.report.tiles import row, run_tiles
 from nullmotion.report.verdict import status_words, verdict
+from nullmotion.report.wheels import wheel_findings, wheel_tiles
 from nullmotion.report.wording import number
+
+_HELD = 1e-6  # angle between attitude at the start and at the end below which it is held [deg]
 
 
 def run_report(
@@ -31,6 +36,7 @@ def run_report(
     title: str,
     scenario_text: str = "",
     requirements: Results = (),
+    wheels: Mapping[str, Any] | None = None,
 ) -> Path:
     """Write one run as an HTML page that needs no network.
 
@@ -40,6 +46,7 @@ def run_report(
         title: Title of the page.
         scenario_text: The scenario file as written, shown on demand.
         requirements: What `nullmotion.scenario.requirements.evaluate` returns.
+        wheels: What `nullmotion.scenario.vscmg_summary.summary` returns.
 
     Returns:
         The path.
@@ -49,10 +56,11 @@ def run_report(
     drawn = [charts.add(panel, group="time") for panel in panels]
     attitude = of_attitude(trajectory)
     tiles = attitude_tiles(trajectory) if attitude else run_tiles(trajectory)
+    tiles += [] if attitude else wheel_tiles(trajectory)
     kept = requirement_table(requirements) if requirements else None
     atlas = Atlas(run_scene(trajectory), begin_at_end=True)
     parts = [
-        headline(trajectory, title, requirements),
+        headline(trajectory, title, requirements, wheels),
         page.section("Key numbers", row(tiles), id="numbers"),
         *([page.section("Requirements", kept, id="requirements")] if kept else []),
         page.section(
@@ -69,13 +77,17 @@ def run_report(
     return page.write(path, made)
 
 
-def headline(run: Run, title: str, requirements: Results = ()) -> Markup:
+def headline(
+    run: Run, title: str, requirements: Results = (), wheels: Mapping[str, Any] | None = None
+) -> Markup:
     """Return the first lines: title, verdict, what ran, what else happened."""
     said = verdict(run)
     lost = told(run) if said.tone == "trouble" else ""
     words = f"{lost}; {said.words[0].lower()}{said.words[1:]}" if lost else said.words
     flags = [tag("li", flag) for flag in status_words(run)]
-    more = findings(run, requirements, not lost) if of_attitude(run) else []
+    more = findings(run, requirements, not lost, wheels) if of_attitude(run) else []
+    if turns_wheels(run) and not of_attitude(run):
+        more = list(wheel_findings(run, wheels))
     return tag(
         "header",
         tag("p", title, class_="title"),
@@ -95,7 +107,8 @@ def subject(run: Run) -> str:
     name = f"{long} ({law.name})" if long and long.lower() != law.name.lower() else law.name
     same = np.ptp(array.h0) == 0
     size = f"{number(array.mean_momentum)} N m s {'each' if same else 'in the mean'}"
-    on = f"{name} on {array.label}, {array.n} CMGs of {size}"
+    kind = "VSCMGs" if turns_wheels(run) else "CMGs"
+    on = f"{name} on {array.label}, {array.n} {kind} of {size}"
     return f"{on}; {turn(run)}" if of_attitude(run) else f"{on}; asked for {command(run)}"
 
 
@@ -113,7 +126,8 @@ def turn(run: Run) -> str:
     way = "" if run.setup.reference is None else "following a reference "
     controller = run.setup.controller
     long = getattr(controller, "full_name", "") or controller.name
-    return f"asked to turn by {number(angle)} deg, {way}under {long.lower()}"
+    asked = f"turn by {number(angle)} deg" if angle > _HELD else "hold its attitude"
+    return f"asked to {asked}, {way}under {long.lower()}"
 
 
 def thinning(charts: Charts) -> Markup:

@@ -14,6 +14,7 @@ from nullmotion.plot.quantities import (
     tolerance_deg,
 )
 from nullmotion.plot.view import Run
+from nullmotion.report.wheels import at_speed, incomplete
 from nullmotion.report.wording import number, plain
 
 Tone = Literal["done", "stopped", "trouble"]
@@ -60,12 +61,15 @@ def _of_attitude(run: Run) -> Verdict:
     if allowed is None or settled is None:
         tone: Tone = "stopped" if stopped else "done"
         return Verdict(f"{ended or f'Ran to the end ({number(run.t[-1])} s)'}; {left}", tone)
-    within = f"within {number(allowed)} deg"
+    within, missed = f"within {number(allowed)} deg", incomplete(run)
+    if missed:
+        words = f"{missed}, {left}"
+        return Verdict("; ".join(filter(None, [words, ended.lower()])), "trouble")
     if not np.isfinite(settled):
         words = f"ot settled {within}: {left}"
         return Verdict(f"{ended}; n{words}" if stopped else f"N{words}", "trouble")
     words = f"Settled {within} in {number(settled)} s" if settled > 0 else f"Always {within}"
-    return Verdict("; ".join(filter(None, [words, ended.lower()])), "done")
+    return Verdict("; ".join(filter(None, [words, at_speed(run), ended.lower()])), "done")
 
 
 def _broken_at(run: Run) -> float | None:

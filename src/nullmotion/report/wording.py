@@ -16,6 +16,7 @@ REDUCTIONS = {
     "final": "at the end",
 }
 NOT_SETTLED = "not settled"
+_SETTLING = ("settling_time_s", "momentum_settling_s", "wheel_settling_s")
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -94,7 +95,7 @@ def quantity(value: Any, unit: str, name: str = "") -> tuple[str, str]:
 
     A settling time that is not a number is said in words.
     """
-    if name == "settling_time_s" and value is not None and math.isnan(value):
+    if name in _SETTLING and value is not None and math.isnan(value):
         return NOT_SETTLED, ""
     if name.endswith("_fraction"):
         return percent(value), "%"

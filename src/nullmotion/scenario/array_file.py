@@ -8,8 +8,7 @@ from pathlib import PurePath
 import numpy as np
 
 from nullmotion.array import CmgArray
-from nullmotion.scenario import keys, objects
-from nullmotion.scenario.checks import check_array
+from nullmotion.scenario import array_checks, keys, objects
 from nullmotion.scenario.problems import MISSING
 from nullmotion.scenario.scenario import Scenario, checked
 from nullmotion.scenario.schema import About, ArraySection
@@ -76,7 +75,7 @@ def array_file(source: Source) -> ArrayFile:
     section = validator.section("array")
     about = validator.section("scenario") if "scenario" in source.data else About()
     validator.raise_problems()
-    array = check_array(section, validator)
+    array = array_checks.check(section, validator)
     validator.raise_problems()
     assert array is not None
     title = about.title or PurePath(source.name).stem

@@ -76,11 +76,18 @@ def quaternion(q: Any, euler_321_deg: Any) -> np.ndarray | None:
 
 
 def target(scenario: Scenario) -> np.ndarray | None:
-    """Return the attitude to go to, q_RN; None if there is a reference over time."""
-    mission = scenario.mission
+    """Return the attitude to go to, q_RN; None if there is a reference over time.
+
+    A startup goes to the attitude at its start unless it has a target.
+    """
+    mission, craft = scenario.mission, scenario.spacecraft
     if mission.profile is not None or mission.slew_time_s is not None:
         return None
-    return quaternion(mission.target_q_BN, mission.target_euler_321_deg)
+    given = quaternion(mission.target_q_BN, mission.target_euler_321_deg)
+    if given is not None or craft is None:
+        return given
+    start = quaternion(craft.q_BN, craft.euler_321_deg)
+    return np.array([1.0, 0.0, 0.0, 0.0]) if start is None else start
 
 
 def reference(scenario: Scenario, start: np.ndarray, times: np.ndarray) -> np.ndarray | None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from nullmotion.errors import InputError
-from nullmotion.scenario import build, columns, keys, merge, sections
+from nullmotion.scenario import build, columns, keys, merge, sections, startup
 from nullmotion.scenario.scenario import Scenario
 from nullmotion.scenario.toml import value_text
 from nullmotion.sim.batch import BatchResult, run_batch, structure
@@ -42,7 +42,10 @@ def run(
         picked = [setups[i] for i in rows]
         own = {key: table[rows] for key, table in arrays.items()}
         parts.append(_simulated(picked[0], picked, own, options))
-    return merge.merged(parts, together)
+    found = merge.merged(parts, together)
+    if scenario.mission.kind == "startup":
+        return startup.judged_batch(scenario, setups, found)
+    return found
 
 
 def dotted_key(scenario: Scenario, key: str) -> str:

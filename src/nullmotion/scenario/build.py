@@ -11,7 +11,16 @@ from nullmotion import metrics
 from nullmotion.array import CmgArray
 from nullmotion.errors import InputError
 from nullmotion.metrics.base import Metric
-from nullmotion.scenario import attitude, metric_keys, objects, plant, profile, start, vehicle
+from nullmotion.scenario import (
+    attitude,
+    metric_keys,
+    objects,
+    plant,
+    profile,
+    start,
+    vehicle,
+    vscmg_units,
+)
 from nullmotion.scenario.checks import WHOLE
 from nullmotion.scenario.scenario import Scenario
 from nullmotion.scenario.schema import StopSection
@@ -34,7 +43,7 @@ def setup(scenario: Scenario, metric_names: tuple[str, ...] | None = None) -> Se
     dt = scenario.simulation.dt_s
     period = _steps(scenario.law.period_s or dt, dt)
     steps = step_count(scenario)
-    real, bias = _plant(scenario, array)
+    real, bias = plant.drawn(scenario.plant, array)
     return Setup(
         array=array,
         law=objects.law(scenario.law),
@@ -49,7 +58,7 @@ def setup(scenario: Scenario, metric_names: tuple[str, ...] | None = None) -> Se
         integrator=scenario.simulation.integrator,
         stop=stops(scenario.stop),
         metrics=_metrics(scenario, metric_names),
-        **_surroundings(scenario, array, np.arange(0, steps, period) * dt),
+        **_surroundings(scenario, array, np.arange(0, steps + 1, period) * dt),
     )
 
 
@@ -61,13 +70,20 @@ def metric(name: str, **parameters: Any) -> Metric:
 
 def _metrics(scenario: Scenario, names: tuple[str, ...] | None) -> tuple[Metric, ...]:
     """Return what is measured, the tolerance of settling as the mission has it."""
-    body = scenario.mission.kind == "attitude"
-    settling = {"tolerance": math.radians(scenario.mission.settle_tolerance_deg)}
-    chosen = names or metrics.applicable(body)
+    body, wheels = scenario.mission.turns_body, scenario.variable_speed
+    settling = {
+        "settling_time_s": math.radians(scenario.mission.settle_tolerance_deg),
+        "momentum_settling_s": scenario.mission.wheel_tolerance,
+        "wheel_settling_s": scenario.mission.wheel_tolerance,
+    }
+    chosen = names or metrics.applicable(body, wheels)
     for name in chosen:
         if metrics.get(name).needs_body and not body:
             raise InputError("metrics", name, 'one that needs no mission.kind = "attitude"')
-    return tuple(metric(n, **(settling if n == "settling_time_s" else {})) for n in chosen)
+        if metrics.get(name).needs_wheels and not wheels:
+            raise InputError("metrics", name, "one that needs no variable wheel speeds")
+    tolerances = {n: {"tolerance": settling[n]} if n in settling else {} for n in chosen}
+    return tuple(metric(n, **own) for n, own in tolerances.items())
 
 
 def step_count(scenario: Scenario) -> int:
@@ -86,17 +102,6 @@ def stops(section: StopSection) -> tuple[Stop, ...]:
         Stop(metric_keys.metric(key)(), value, key.endswith("_below"))
         for key, value in metric_keys.limits(section).items()
     )
-
-
-def _plant(scenario: Scenario, array: CmgArray) -> tuple[CmgArray | None, np.ndarray | None]:
-    section = scenario.plant
-    if section is None:
-        return None, None
-    generator = np.random.default_rng(section.seed)
-    real = plant.real_array(array, section, generator)
-    bias = plant.encoder_bias(array.n, section, generator)
-    exact = section.gimbal_axis_error_deg == 0 and section.h0_error == 0
-    return None if exact else real, bias if section.encoder_bias_deg else None
 
 
 def _command(scenario: Scenario, array: CmgArray, steps: int, period: int) -> np.ndarray:
@@ -124,7 +129,11 @@ def _surroundings(scenario: Scenario, array: CmgArray, times: np.ndarray) -> dic
             found[name] = getattr(vehicle, name)(section)
     if scenario.reaction_wheel is not None:
         found["reaction_wheel"] = vehicle.reaction_wheel(scenario.reaction_wheel, array)
-    if scenario.mission.kind == "attitude":
+    if scenario.vscmg is not None:
+        found["units"] = vscmg_units.made(scenario.vscmg, scenario.array, array.n)
+    if scenario.variable_speed and array.wheels is not None:
+        found["wheel_speed"] = vscmg_units.wheel_speed(scenario, array)
+    if scenario.mission.turns_body:
         found["target"] = attitude.target(scenario)
         found["reference"] = attitude.reference(scenario, found["spacecraft"].q_BN, times)
     return found

@@ -10,15 +10,16 @@ import numpy as np
 from nullmotion.array import CmgArray
 from nullmotion.errors import InputError, UnknownNameError
 from nullmotion.scenario import (
+    array_checks,
     mission_checks,
     objects,
     requirements,
     spacecraft_checks,
     start,
+    vscmg_checks,
 )
 from nullmotion.scenario.construction import add_construction
 from nullmotion.scenario.scenario import Scenario
-from nullmotion.scenario.schema import ArraySection
 from nullmotion.scenario.toml import Path
 from nullmotion.scenario.validate import Validator
 
@@ -28,7 +29,7 @@ MOST_STEPS = 2**31
 
 def check(scenario: Scenario, validator: Validator) -> None:
     """Add to the validator what does not fit together."""
-    array = check_array(scenario.array, validator)
+    array = array_checks.check(scenario.array, validator)
     if array is not None:
         _check_start(scenario, array, validator)
         mission_checks.check(scenario, array, validator)
@@ -41,6 +42,8 @@ def check(scenario: Scenario, validator: Validator) -> None:
             objects.law(section)
         except InputError as error:
             add_construction(validator, path, error)
+    if array is not None:
+        vscmg_checks.check(scenario, array, validator)
 
 
 def _check_cost(scenario: Scenario, v: Validator) -> None:
@@ -56,56 +59,6 @@ def _check_cost(scenario: Scenario, v: Validator) -> None:
 
 def _cases(scenario: Scenario) -> list[tuple[Path, Any]]:
     return [(("compare", "case", i), case) for i, case in enumerate(scenario.cases)]
-
-
-def check_array(section: ArraySection, v: Validator) -> CmgArray | None:
-    """Return the array of a section; None after adding to the validator what is wrong with it."""
-    wheels = [k for k in ("wheel_inertia_kg_m2", "wheel_speed_rpm") if section.given(k)]
-    if wheels and section.given("h0_Nms"):
-        v.add(
-            ("array", "h0_Nms"),
-            section.h0_Nms,
-            f"either h0_Nms or wheel_inertia_kg_m2 and wheel_speed_rpm; {wheels[0]} is given too",
-        )
-    elif len(wheels) == 1:
-        other = "wheel_speed_rpm" if wheels[0] == "wheel_inertia_kg_m2" else "wheel_inertia_kg_m2"
-        v.add(("array", wheels[0]), getattr(section, wheels[0]), f"only together with {other}")
-    if section.frozen_at_deg is not None and not section.failed_cmgs:
-        v.add(("array", "frozen_at_deg"), section.frozen_at_deg, "only together with failed_cmgs")
-    if v.problems:
-        return None
-    try:
-        whole = objects.whole_array(section)
-    except InputError as error:
-        add_construction(v, ("array",), error)
-        return None
-    except ValueError:  # lengths of wheel inertias and speeds
-        v.add(
-            ("array", "wheel_speed_rpm"),
-            section.wheel_speed_rpm,
-            "one number or one for each wheel",
-        )
-        return None
-    return _check_failures(section, whole, v)
-
-
-def _check_failures(section: ArraySection, whole: CmgArray, v: Validator) -> CmgArray | None:
-    frozen = section.frozen_at_deg
-    if isinstance(frozen, tuple) and len(frozen) != len(set(section.failed_cmgs)):
-        v.add(
-            ("array", "frozen_at_deg"),
-            frozen,
-            f"one number or {len(section.failed_cmgs)}, one for each failed CMG",
-        )
-    elif len(set(section.failed_cmgs)) >= whole.n or any(i >= whole.n for i in section.failed_cmgs):
-        v.add(
-            ("array", "failed_cmgs"),
-            section.failed_cmgs,
-            f"indices from 0 to {whole.n - 1}, at least one CMG left",
-        )
-    else:
-        return objects.array(section)
-    return None
 
 
 def _check_start(scenario: Scenario, array: CmgArray, v: Validator) -> None:

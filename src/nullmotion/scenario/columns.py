@@ -47,9 +47,16 @@ def split(
 
 
 def _is_free(scenario: Scenario, base: Setup, argument: str) -> bool:
-    """Return whether an argument can change without anything else that depends on it."""
+    """Return whether an argument can change without anything else that depends on it.
+
+    In a startup all do: its momentum budget is checked for each run.
+    """
     mission = scenario.mission
+    if mission.kind == "startup":
+        return False
     match argument:
+        case "delta":
+            return scenario.vscmg is None  # inertia without units depends on the angles
         case "hdot":
             return mission.kind == "momentum-rate"
         case "target":

@@ -14,6 +14,7 @@ import numpy as np
 from nullmotion.scenario import metric_keys, sections
 from nullmotion.scenario.scenario import Scenario
 from nullmotion.scenario.variables import CONVENTIONS, WITH_BODY
+from nullmotion.scenario.variables_vscmg import WITH_WHEELS
 from nullmotion.sim.trajectory import Trajectory
 
 _SECTIONS = (
@@ -29,6 +30,7 @@ _SECTIONS = (
     "desaturation",
     "reaction_wheel",
     "plan",
+    "vscmg",
 )
 
 
@@ -41,7 +43,7 @@ def attributes(
         if scenario
         else f"{trajectory.setup.law.name} on {trajectory.setup.array.label}",
         "source": f"nullmotion {versions()['nullmotion']}",
-        "conventions": CONVENTIONS + (WITH_BODY if trajectory.setup.spacecraft else ""),
+        "conventions": _conventions(trajectory),
         "law": trajectory.setup.law.name,
         "stop_reason": trajectory.stop_reason,
         "status": ", ".join(trajectory.status) or "ok",
@@ -63,6 +65,12 @@ def attributes(
     }
 
 
+def _conventions(trajectory: Trajectory) -> str:
+    setup = trajectory.setup
+    body, wheels = bool(setup.spacecraft), setup.variable_speed
+    return CONVENTIONS + (WITH_BODY if body else "") + (WITH_WHEELS if wheels else "")
+
+
 def resolved(trajectory: Trajectory, scenario: Scenario | None) -> dict[str, Any]:
     """Return all parameters of a run, defaults put in."""
     setup = trajectory.setup
@@ -78,6 +86,8 @@ def resolved(trajectory: Trajectory, scenario: Scenario | None) -> dict[str, Any
     found["array"] |= scenario.layout_parameters()
     found["law"] |= {"period_s": setup.period, "delay_s": scenario.law.delay_s}
     found["initial"] = {"gimbal_deg": np.degrees(setup.delta)}
+    if setup.variable_speed:
+        found["initial"]["wheel_speed_rad_s"] = setup.wheel_speed
     if setup.spacecraft is not None and setup.controller is not None:
         craft = {"inertia_kg_m2": setup.spacecraft.inertia, "q_BN": setup.spacecraft.q_BN}
         found["spacecraft"] |= {**craft, "euler_321_deg": None}

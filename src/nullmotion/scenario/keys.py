@@ -7,10 +7,10 @@ from difflib import get_close_matches
 
 UNITS = {  # as written in keys: as written in messages
     "rad_s2": "rad/s2", "deg_s2": "deg/s2", "kg_m2": "kg m2", "rad_s": "rad/s", "deg_s": "deg/s",
-    "Nms": "N m s", "Nm": "N m", "rpm": "rpm", "deg": "deg", "rad": "rad", "ms": "ms",
+    "Nms": "N m s", "Nm": "N m", "W": "W", "rpm": "rpm", "deg": "deg", "rad": "rad", "ms": "ms",
     "per_s": "1/s", "s": "s", "kHz": "kHz", "Hz": "Hz", "km": "km", "m": "m",
 }  # fmt: skip
-_UNWRITTEN = {"omega_BN_B": "rad/s"}
+_UNWRITTEN = {"omega_BN_B": "rad/s", "k_m": "1/(kg m2 s)"}
 _MOST = 60
 
 
@@ -20,6 +20,12 @@ def split_unit(key: str) -> tuple[str, str]:
         if key.lower().endswith("_" + unit.lower()):
             return key[: -len(unit) - 1].lower(), text
     return key.lower(), ""
+
+
+def without_unit(key: str) -> str:
+    """Return a key as fields of records are called: without its unit."""
+    unit = next((unit for unit in UNITS if key.endswith("_" + unit)), None)
+    return key if unit is None else key[: -len(unit) - 1]
 
 
 def same_quantity(key: str, known: Iterable[str]) -> str | None:

@@ -14,6 +14,12 @@ from nullmotion.sim.setup import Setup
 from nullmotion.sim.trajectory import Trajectory
 from nullmotion.sim.workers import run_each
 
+_BODY = {  # what a batch holds of a body and of wheels, and where a run holds it
+    "final_q_BN": "q_BN",
+    "final_omega_BN_B": "omega_BN_B",
+    "final_wheel_speed": "wheel_speed",
+}
+
 
 def merged(parts: Sequence[BatchResult], rows: Sequence[np.ndarray]) -> BatchResult:
     """Return one result whose run ``rows[p][i]`` is run i of part p."""
@@ -33,7 +39,14 @@ def merged(parts: Sequence[BatchResult], rows: Sequence[np.ndarray]) -> BatchRes
         None,
         parts[0].backend,
         parts[0].instruction_set,
+        **{name: _where_known([getattr(p, name) for p in parts], order) for name in _BODY},
     )
+
+
+def _where_known(columns: Sequence[np.ndarray | None], order: np.ndarray) -> np.ndarray | None:
+    """Return what each part has, joined; None if any has none."""
+    known = [column for column in columns if column is not None]
+    return _joined(known, order) if len(known) == len(columns) else None
 
 
 def _joined(columns: Sequence[np.ndarray], order: np.ndarray) -> np.ndarray:
@@ -78,4 +91,15 @@ def gathered(runs: Sequence[Trajectory]) -> BatchResult:
         {flag: np.array([flag in run.status for run in runs]) for flag in flags},
         None,
         "python",
+        **_ends(runs),
     )
+
+
+def _ends(runs: Sequence[Trajectory]) -> dict[str, Any]:
+    """Return the final state of body and wheels, where the runs have them."""
+    known = {name: source for name, source in _BODY.items() if _has(runs[0], source)}
+    return {n: np.array([getattr(run, s)[-1] for run in runs]) for n, s in known.items()}
+
+
+def _has(run: Trajectory, name: str) -> bool:
+    return getattr(run, name) is not None

@@ -10,14 +10,17 @@ from nullmotion.array import CmgArray
 from nullmotion.scenario import attitude, profile
 from nullmotion.scenario.problems import MISSING
 from nullmotion.scenario.scenario import Scenario
+from nullmotion.scenario.schema import MissionSection
 from nullmotion.scenario.toml import Path
 from nullmotion.scenario.validate import Validator
 
 _TARGETS = ("target_q_BN", "target_euler_321_deg")
+_ATTITUDE = (*_TARGETS, "profile", "profile_hold", "slew_time_s", "settle_tolerance_deg")
 _KEYS = {
     "momentum-rate": ("hdot_Nm", "profile"),
     "momentum": ("momentum_Nms",),
-    "attitude": (*_TARGETS, "profile", "profile_hold", "slew_time_s", "settle_tolerance_deg"),
+    "attitude": _ATTITUDE,
+    "startup": (*_ATTITUDE, "wheel_tolerance"),
 }
 
 
@@ -32,9 +35,8 @@ def check(scenario: Scenario, array: CmgArray, v: Validator) -> None:
             v.add(("mission", key), getattr(mission, key), allowed)
     if v.problems:
         return
-    {"momentum-rate": _rate, "momentum": _momentum, "attitude": _attitude}[mission.kind](
-        scenario, array, v
-    )
+    checks = {"momentum-rate": _rate, "momentum": _momentum}
+    checks.get(mission.kind, _attitude)(scenario, array, v)
 
 
 def torque_dimensions(v: Validator, path: Path, value: tuple[float, ...], m: int) -> bool:
@@ -90,7 +92,7 @@ def _attitude(scenario: Scenario, array: CmgArray, v: Validator) -> None:
     elif targets and mission.profile is not None:
         v.add(("mission", "profile"), mission.profile, f"give {targets[0]} or profile, not both")
     elif not targets and mission.profile is None:
-        v.add(("mission",), MISSING, f"needs {', '.join(_TARGETS)} or profile")
+        _without_target(mission, v)
     if mission.slew_time_s is not None and mission.profile is not None:
         allowed = "only with a target (a profile has times of its own)"
         v.add(("mission", "slew_time_s"), mission.slew_time_s, allowed)
@@ -99,6 +101,15 @@ def _attitude(scenario: Scenario, array: CmgArray, v: Validator) -> None:
     quaternion(v, ("mission", "target_q_BN"), mission.target_q_BN)
     if mission.profile is not None and not targets:
         _load(scenario, v, lambda name: attitude.check_profile(mission, scenario.source, name))
+
+
+def _without_target(mission: MissionSection, v: Validator) -> None:
+    """Note a missing target; a startup goes to the attitude at its start."""
+    if mission.kind == "attitude":
+        v.add(("mission",), MISSING, f"needs {', '.join(_TARGETS)} or profile")
+    elif mission.slew_time_s is not None:
+        allowed = f"only together with {' or '.join(_TARGETS)}"
+        v.add(("mission", "slew_time_s"), mission.slew_time_s, allowed)
 
 
 def _load(scenario: Scenario, v: Validator, read: Any) -> None:

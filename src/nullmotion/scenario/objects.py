@@ -9,6 +9,7 @@ import numpy as np
 from nullmotion import laws
 from nullmotion.array import CmgArray, layouts
 from nullmotion.array.layout import Layout
+from nullmotion.array.wheels import Wheels
 from nullmotion.law import Law
 from nullmotion.scenario.schema import ArraySection, CustomArraySection, NamedLaw
 from nullmotion.scenario.sections import parameters
@@ -32,9 +33,18 @@ def whole_array(section: ArraySection) -> CmgArray:
         own["angle_limits"] = np.radians(section.angle_limits_deg)
     if section.momentum_bias_Nms is not None:
         own["momentum_bias"] = np.array(section.momentum_bias_Nms, float)
+    if section.wheel_inertia_kg_m2 is not None:
+        own["wheels"] = wheels(section)
     if isinstance(section, CustomArraySection):
         return CmgArray(np.array(section.gimbal_axes), np.array(section.spin_axes), **own)
     return layout(section).array(**own)
+
+
+def whole_count(section: ArraySection) -> int:
+    """Return the number of CMGs before any failed."""
+    if isinstance(section, CustomArraySection):
+        return len(section.gimbal_axes)
+    return layout(section).array().n
 
 
 def array(section: ArraySection) -> CmgArray:
@@ -48,13 +58,29 @@ def array(section: ArraySection) -> CmgArray:
 
 def momenta(section: ArraySection) -> Any:
     """Return the spin momenta [N m s]: given, or wheel inertia times wheel speed."""
-    if section.wheel_inertia_kg_m2 is None or section.wheel_speed_rpm is None:
+    speed = wheel_speed(section)
+    if section.wheel_inertia_kg_m2 is None or speed is None:
         return np.asarray(section.h0_Nms, float)
-    return (
-        np.asarray(section.wheel_inertia_kg_m2, float)
-        * np.asarray(section.wheel_speed_rpm, float)
-        * RPM
-    )
+    return np.asarray(section.wheel_inertia_kg_m2, float) * speed
+
+
+def wheel_speed(section: ArraySection) -> Any:
+    """Return the wheel speed that is given [rad/s]; None where it is not."""
+    if section.wheel_speed_rad_s is not None:
+        return np.asarray(section.wheel_speed_rad_s, float)
+    given = section.wheel_speed_rpm
+    return None if given is None else np.asarray(given, float) * RPM
+
+
+def wheels(section: ArraySection) -> Wheels:
+    """Return the flywheels with the limits of their motors."""
+    limits = {
+        "torque_limit": (section.wheel_torque_limit_Nm, 1.0),
+        "speed_limit": (section.wheel_speed_limit_rpm, RPM),
+        "power_limit": (section.wheel_power_limit_W, 1.0),
+    }
+    own = {k: np.asarray(v, float) * unit for k, (v, unit) in limits.items() if v is not None}
+    return Wheels(np.asarray(section.wheel_inertia_kg_m2, float), **own)
 
 
 def working(section: ArraySection, values: Any, n: int) -> np.ndarray:

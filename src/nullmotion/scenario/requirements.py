@@ -6,8 +6,10 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from nullmotion.metrics.base import Metric
 from nullmotion.scenario import metric_keys
 from nullmotion.scenario.scenario import Scenario
+from nullmotion.scenario.toml import Path
 from nullmotion.scenario.validate import Validator
 
 
@@ -46,16 +48,20 @@ def passed(results: list[dict[str, Any]]) -> bool | None:
 
 
 def check(scenario: Scenario, validator: Validator) -> None:
-    """Add limits on what this kind of mission does not have: attitude without a spacecraft."""
-    if scenario.mission.kind == "attitude":
-        return
-    allowed = f'only with mission.kind = "attitude" (this is "{scenario.mission.kind}")'
+    """Add limits on what this run does not have: attitude, or wheels whose speed changes."""
     known = metric_keys.summary_names()
     required = {} if scenario.requirements is None else metric_keys.limits(scenario.requirements)
-    for key, value in required.items():
-        metric = known[metric_keys.split(key)[0]]
-        if metric is not None and metric.needs_body:
-            validator.add(("requirements", key), value, allowed)
-    for key, value in metric_keys.limits(scenario.stop).items():
-        if metric_keys.metric(key).needs_body:
-            validator.add(("simulation", "stop", key), value, allowed)
+    rows: list[tuple[Path, float, type[Metric] | None]] = [
+        (("requirements", k), v, known[metric_keys.split(k)[0]]) for k, v in required.items()
+    ]
+    stops = metric_keys.limits(scenario.stop).items()
+    rows += [(("simulation", "stop", k), v, metric_keys.metric(k)) for k, v in stops]
+    for path, value, metric in rows:
+        if metric is None:
+            continue
+        if metric.needs_body and not scenario.mission.turns_body:
+            kind = scenario.mission.kind
+            allowed = f'only with mission.kind = "attitude" or "startup" (this is "{kind}")'
+            validator.add(path, value, allowed)
+        if metric.needs_wheels and not scenario.variable_speed:
+            validator.add(path, value, "only with a law that turns the wheels, or [vscmg]")

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import PurePath
 from typing import Any
 
+from nullmotion import laws
+from nullmotion.errors import UnsupportedArrayError
 from nullmotion.scenario.schema import (
     About,
     ArraySection,
@@ -30,6 +32,7 @@ from nullmotion.scenario.schema_spacecraft import (
     ServoSection,
     SpacecraftSection,
 )
+from nullmotion.scenario.schema_vscmg import VscmgSection
 from nullmotion.scenario.source import Source
 from nullmotion.scenario.validate import Validator
 
@@ -44,7 +47,7 @@ class Scenario:
         plant: None when the real array is as the law is told.
         stop: Thresholds at which the run ends.
         cases: What `compare` runs beside the law.
-        spacecraft: The body that carries the array; None unless the mission is an attitude.
+        spacecraft: The body that carries the array; None unless the mission turns it.
         controller: What makes the command from the attitude, likewise.
         servo: None when gimbals follow at once.
         sensors: None when rate and attitude are measured exactly.
@@ -54,6 +57,7 @@ class Scenario:
         events: Faults.
         plan: How null motion is planned; None unless the file has such a section.
         requirements: Limits of the summary's numbers, likewise.
+        vscmg: The units of variable-speed CMGs on a spacecraft, likewise.
     """
 
     source: Source
@@ -76,11 +80,17 @@ class Scenario:
     events: tuple[EventSection, ...] = ()
     plan: PlanSection | None = None
     requirements: RequirementsSection | None = None
+    vscmg: VscmgSection | None = None
 
     @property
     def name(self) -> str:
         """Short name: that of the file without its ending."""
         return PurePath(self.source.name).stem or "scenario"
+
+    @property
+    def variable_speed(self) -> bool:
+        """Whether wheel speeds change: by the law, or as units of their own say."""
+        return self.vscmg is not None or laws.get(self.law.name).turns_wheels
 
     @property
     def title(self) -> str:
@@ -92,7 +102,16 @@ class Scenario:
         return checked(self.source.over(values, origin)) if values else self
 
     def with_law(self, case: CaseSection) -> Scenario:
-        """Return the scenario with the law of a case; period and delay stay."""
+        """Return the scenario with the law of a case; period and delay stay.
+
+        Raises:
+            UnsupportedArrayError: When that law cannot fly what this one can.
+        """
+        from nullmotion.scenario.startup_checks import unsuitable  # it works on a Scenario
+
+        reason = unsuitable(self, laws.get(case.name))
+        if reason:
+            raise UnsupportedArrayError(case.name, reason)
         own = {k: getattr(case, k) for k in case.model_fields_set if k != "label"}
         kept = {k: getattr(self.law, k) for k in ("period_s", "delay_s") if self.law.given(k)}
         return checked(self.source.over({"law": {**own, **kept}}, "compare.case"))
@@ -121,6 +140,7 @@ _OPTIONAL = (
     "reaction_wheel",
     "plan",
     "requirements",
+    "vscmg",
 )
 
 

@@ -77,6 +77,10 @@ class ArraySection(Section):
     h0_Nms: one_or_each(NotNegative) = 1.0  # type: ignore[valid-type]
     wheel_inertia_kg_m2: one_or_each(Positive) | None = None  # type: ignore[valid-type]
     wheel_speed_rpm: one_or_each(NotNegative) | None = None  # type: ignore[valid-type]
+    wheel_speed_rad_s: one_or_each(NotNegative) | None = None  # type: ignore[valid-type]
+    wheel_torque_limit_Nm: one_or_each(NotNegative) | None = None  # type: ignore[valid-type]
+    wheel_speed_limit_rpm: one_or_each(Positive) | None = None  # type: ignore[valid-type]
+    wheel_power_limit_W: one_or_each(Positive) | None = None  # type: ignore[valid-type]
     rate_limit_deg_s: one_or_each(Positive) | None = None  # type: ignore[valid-type]
     rate_limit_mode: Literal["scale", "clip"] = "scale"
     angle_limits_deg: Limits | None = None
@@ -106,6 +110,7 @@ class InitialSection(Section):
 
     gimbal_deg: Some | None = None
     momentum_Nms: Some | None = None
+    wheel_speed_rad_s: one_or_each(float) | None = None  # type: ignore[valid-type]
 
 
 class NamedLaw(Section):
@@ -128,9 +133,9 @@ class CaseSection(NamedLaw):
 
 
 class MissionSection(Section):
-    """``[mission]``: what is asked: a rate of momentum, a momentum, or an attitude."""
+    """``[mission]``: what is asked: a rate of momentum, a momentum, an attitude, a startup."""
 
-    kind: Literal["momentum-rate", "momentum", "attitude"] = "momentum-rate"
+    kind: Literal["momentum-rate", "momentum", "attitude", "startup"] = "momentum-rate"
     hdot_Nm: Some | None = None
     momentum_Nms: Some | None = None
     target_q_BN: Four | None = None
@@ -139,6 +144,12 @@ class MissionSection(Section):
     profile_hold: bool = False
     slew_time_s: Positive | None = None
     settle_tolerance_deg: Annotated[float, Field(gt=0, le=180)] = 0.1
+    wheel_tolerance: Annotated[float, Field(gt=0, lt=1)] = 0.02
+
+    @property
+    def turns_body(self) -> bool:
+        """Whether it asks for an attitude, which takes a spacecraft."""
+        return self.kind in ("attitude", "startup")
 
 
 class StopSection(Section):

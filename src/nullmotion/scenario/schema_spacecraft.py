@@ -114,7 +114,7 @@ class ReactionWheelSection(Section):
 class EventSection(Section):
     """``[[event]]``: a fault of one CMG (counted from 0, failed ones included) from a time on."""
 
-    kind: Literal["stuck", "slow", "spin-down"]
+    kind: Literal["stuck", "slow", "spin-down", "wheel-dead"]
     cmg: Annotated[int, Field(ge=0)]
     at_s: NotNegative
     detected_after_s: Annotated[float, Field(ge=0, allow_inf_nan=True)] = 0.0

@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, Field, create_model
 
 from nullmotion import laws
 from nullmotion.array import layouts
-from nullmotion.scenario import schema, schema_spacecraft
+from nullmotion.scenario import schema, schema_spacecraft, schema_vscmg
 from nullmotion.scenario.metric_keys import requirements_model, stop_model
 from nullmotion.spacecraft import controllers
 
@@ -160,6 +160,7 @@ _PLAIN: dict[str, type[schema.Section]] = {
     "desaturation": schema_spacecraft.DesaturationSection,
     "reaction_wheel": schema_spacecraft.ReactionWheelSection,
     "plan": schema_spacecraft.PlanSection,
+    "vscmg": schema_vscmg.VscmgSection,
 }
 LISTS = ("event",)
 SECTIONS = (*_PLAIN, "array", "law", "requirements", *LISTS, "compare")

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from nullmotion.scenario import batch, build
+from nullmotion.scenario import batch, build, startup
 from nullmotion.scenario.load import load_scenario
 from nullmotion.scenario.scenario import Scenario
 from nullmotion.sim.batch import BatchResult
@@ -31,9 +31,9 @@ def simulate(
         decimate: Keep every so many steps.
         progress: Called with the finished share.
     """
-    return run(
-        build.setup(_loaded(scenario)), backend=backend, decimate=decimate, progress=progress
-    )
+    loaded = _loaded(scenario)
+    flown = run(build.setup(loaded), backend=backend, decimate=decimate, progress=progress)
+    return startup.judged(loaded, flown)
 
 
 def simulate_batch(

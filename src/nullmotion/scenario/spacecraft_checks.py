@@ -54,6 +54,17 @@ def _servo(scenario: Scenario, array: CmgArray, v: Validator) -> None:
     section = scenario.servo
     if section is None:
         return
+    each_cmg(scenario, array, "servo", v)
+    if section.gimbal_inertia_kg_m2 is None:
+        for key in ("motor_torque_limit_Nm", "friction_Nm"):
+            value = getattr(section, key)
+            if value is not None and np.any(np.asarray(value) != 0):
+                v.add(("servo", key), value, "only together with gimbal_inertia_kg_m2")
+
+
+def each_cmg(scenario: Scenario, array: CmgArray, name: str, v: Validator) -> None:
+    """Note lists in a section that have another length than one value for each CMG."""
+    section = getattr(scenario, name)
     total = array.n + len(set(scenario.array.failed_cmgs))
     counts = sorted({array.n, total})
     for key in type(section).model_fields:
@@ -61,12 +72,7 @@ def _servo(scenario: Scenario, array: CmgArray, v: Validator) -> None:
         if isinstance(value, tuple) and len(value) not in counts:
             words = " or ".join(map(str, counts))
             allowed = f"one number or {words}, one for each CMG (this has {len(value)})"
-            v.add(("servo", key), value, allowed)
-    if section.gimbal_inertia_kg_m2 is None:
-        for key in ("motor_torque_limit_Nm", "friction_Nm"):
-            value = getattr(section, key)
-            if value is not None and np.any(np.asarray(value) != 0):
-                v.add(("servo", key), value, "only together with gimbal_inertia_kg_m2")
+            v.add((name, key), value, allowed)
 
 
 def _disturbance(scenario: Scenario, v: Validator) -> None:

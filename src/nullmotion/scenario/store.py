@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from nullmotion.scenario import dataset, requirements
+from nullmotion.scenario import dataset, requirements, vscmg_summary
 from nullmotion.scenario.files import replacing
 from nullmotion.scenario.scenario import Scenario
 from nullmotion.scenario.variables import LABELS, UNITS, variables
+from nullmotion.scenario.variables_vscmg import labels
 from nullmotion.sim.trajectory import Trajectory
 
 TRAJECTORY, SUMMARY, TABLE, REPORT = (
@@ -61,6 +62,7 @@ def write(
 def summary(trajectory: Trajectory, scenario: Scenario) -> dict[str, Any]:
     """Return what ``summary.json`` holds; what is not finite is null."""
     found = {"scenario": scenario.name, "title": scenario.title, **trajectory.summary()}
+    found |= vscmg_summary.summary(trajectory, scenario)
     found["parameters"] = dataset.resolved(trajectory, scenario)["law"]
     found["seed"] = scenario.plant.seed if scenario.plant else None
     found["requirements"] = requirements.evaluate(scenario, found)
@@ -75,6 +77,10 @@ def write_netcdf(trajectory: Trajectory, path: Path, attributes: dict[str, str])
 
     with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
         file.setncatts(attributes)
+        for dimension, names in labels(trajectory).items():
+            file.createDimension(dimension, len(names))
+            told = file.createVariable(dimension, str, (dimension,))
+            told[:] = np.array(names, dtype=object)
         for variable in variables(trajectory):
             for name, size in zip(variable.dims, variable.values.shape, strict=True):
                 if name not in file.dimensions:
@@ -90,7 +96,8 @@ def write_netcdf(trajectory: Trajectory, path: Path, attributes: dict[str, str])
 def write_csv(trajectory: Trajectory, path: Path) -> None:
     """Write the histories as a table, one row a step, units in the column names."""
     columns: dict[str, np.ndarray] = {}
-    known: dict[str, Iterable[object]] = {**LABELS, "torque_axis": _axis_labels(trajectory)}
+    known: dict[str, Iterable[object]] = {**LABELS, **labels(trajectory)}
+    known["torque_axis"] = _axis_labels(trajectory)
     for variable in variables(trajectory):
         if variable.dims[0] != "time":
             continue
@@ -98,8 +105,8 @@ def write_csv(trajectory: Trajectory, path: Path) -> None:
         if variable.values.ndim == 1:
             columns["t_s" if variable.name == "time" else variable.name + unit] = variable.values
             continue
-        labels = known.get(variable.dims[1], range(variable.values.shape[1]))
-        for label, column in zip(labels, variable.values.T, strict=True):
+        names = known.get(variable.dims[1], range(variable.values.shape[1]))
+        for label, column in zip(names, variable.values.T, strict=True):
             columns[f"{variable.name}_{label}{unit}"] = column
     table = np.stack(list(columns.values()), axis=1)
     np.savetxt(path, table, fmt="%.17g", delimiter=",", header=",".join(columns), comments="")
@@ -118,6 +125,6 @@ def to_xarray(trajectory: Trajectory, scenario: Scenario | None = None) -> Any:
 
     found = variables(trajectory)
     data = {v.name: (v.dims, v.values, {"units": v.units, "long_name": v.long_name}) for v in found}
-    return xarray.Dataset(data, attrs=dataset.attributes(trajectory, scenario)).set_coords(
-        ["torque_axes"]
-    )
+    named = {dimension: list(names) for dimension, names in labels(trajectory).items()}
+    made = xarray.Dataset(data, coords=named, attrs=dataset.attributes(trajectory, scenario))
+    return made.set_coords(["torque_axes"])

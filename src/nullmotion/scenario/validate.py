@@ -17,7 +17,14 @@ from nullmotion.spacecraft import controllers
 
 _NEEDED = ("array", "law", "mission", "simulation")
 _ATTITUDE_NEEDS = ("spacecraft", "controller")
-_ATTITUDE_ONLY = (*_ATTITUDE_NEEDS, "sensors", "disturbance", "desaturation", "reaction_wheel")
+_ATTITUDE_ONLY = (
+    *_ATTITUDE_NEEDS,
+    "sensors",
+    "disturbance",
+    "desaturation",
+    "reaction_wheel",
+    "vscmg",
+)
 
 _ALLOWED = {
     "float_type": "a number",
@@ -91,16 +98,18 @@ class Validator:
         if not isinstance(mission, dict):
             return
         kind = mission.get("kind", "momentum-rate")
-        if kind == "attitude":
+        if kind in ("attitude", "startup"):
             for key in _ATTITUDE_NEEDS:
                 if key not in data:
-                    allowed = 'this section is missing; a mission of kind "attitude" needs it'
+                    allowed = f'this section is missing; a mission of kind "{kind}" needs it'
                     self.add((key,), MISSING, allowed)
         elif kind in ("momentum-rate", "momentum"):
             extra = [key for key in data if key in _ATTITUDE_ONLY]
             if extra:
                 names = " and ".join(f"[{key}]" for key in extra)
-                allowed = f'{names} only with mission.kind = "attitude" (this is "{kind}")'
+                allowed = (
+                    f'{names} only with mission.kind = "attitude" or "startup" (this is "{kind}")'
+                )
                 self.add((extra[0],), MISSING, allowed)
 
     def _cases(self, data: Mapping[str, Any]) -> list[Any]:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from nullmotion import rotation
+from nullmotion.scenario import variables_vscmg
+from nullmotion.scenario.variable import Row, Variable
 from nullmotion.sim.trajectory import Trajectory
 
 CONVENTIONS = (
@@ -24,7 +24,6 @@ WITH_BODY = (
     "z, y and x. inertial_momentum is that of spacecraft and array in N."
 )
 _CMG, _AXIS, _QUATERNION = ("time", "cmg"), ("time", "torque_axis"), ("time", "quaternion")
-Row = tuple[str, tuple[str, ...], str, str]
 _HISTORY: tuple[Row, ...] = (
     ("delta", _CMG, "rad", "gimbal angle (true)"),
     ("rates", _CMG, "rad s-1", "gimbal rate applied"),
@@ -75,17 +74,17 @@ LABELS = {
     "angle": ("yaw", "pitch", "roll"),
 }
 # what a column's name ends in for each unit
-UNITS = {"1": "", "s": "_s", "rad": "_rad", "rad s-1": "_rad_s", "N m": "_Nm", "N m s": "_Nms"}
-
-
-class Variable(NamedTuple):
-    """A named array."""
-
-    name: str
-    dims: tuple[str, ...]
-    values: np.ndarray
-    units: str
-    long_name: str
+UNITS = {
+    "1": "",
+    "s": "_s",
+    "rad": "_rad",
+    "rad s-1": "_rad_s",
+    "rad s-2": "_rad_s2",
+    "N m": "_Nm",
+    "N m s": "_Nms",
+    "J": "_J",
+    "kg m2": "_kg_m2",
+}
 
 
 def variables(trajectory: Trajectory) -> list[Variable]:
@@ -100,18 +99,22 @@ def variables(trajectory: Trajectory) -> list[Variable]:
     for name, values in trajectory.measures.items():
         text = _MEASURES.get(name, name.replace("_", " "))
         found.append(Variable(name, ("time",), np.asarray(values), "1", text))
+    found += variables_vscmg.learned(trajectory)
     return [*found, *_geometry(trajectory)]
 
 
 def _surroundings(trajectory: Trajectory) -> tuple[Row, ...]:
     """Return what a run holds of its spacecraft and servo, where it has them."""
-    body, servo = trajectory.setup.spacecraft is not None, trajectory.setup.servo is not None
-    wheel = _WHEEL if trajectory.setup.reaction_wheel is not None else ()
+    setup = trajectory.setup
+    body, servo = setup.spacecraft is not None, setup.servo is not None
+    driven = setup.units is not None and setup.units.drive == "torque"
     return (
-        wheel
+        (_WHEEL if setup.reaction_wheel is not None else ())
         + (_BODY if body else ())
-        + (_SERVO if servo else ())
+        + (_SERVO if servo or driven else ())
         + (_MOTOR if body or servo else ())
+        + (variables_vscmg.WHEELS if setup.variable_speed else ())
+        + (variables_vscmg.DRIVEN if driven else ())
     )
 
 
@@ -137,7 +140,9 @@ def _geometry(trajectory: Trajectory) -> list[Variable]:
     found = [Variable(n, dims, np.asarray(v), units, text) for n, dims, v, units, text in rows]
     craft = trajectory.setup.spacecraft
     if craft is not None:
-        text = "inertia of everything on board in B"
+        text = "inertia of the spacecraft in B, as its file has it"
         dims = ("body_axis", "body_axis_2")
         found.append(Variable("inertia", dims, craft.inertia, "kg m2", text))
-    return found
+    return found + (
+        variables_vscmg.flywheels(trajectory) if trajectory.setup.variable_speed else []
+    )

@@ -144,6 +144,9 @@ class Setup:
         for metric in (*self.metrics, *(s.metric for s in self.stop)):
             if metric.needs_body and self.spacecraft is None:
                 raise InputError("metrics", metric.name, "a metric that needs no spacecraft")
+            if metric.needs_wheels and not self.variable_speed:
+                allowed = "a metric that needs no variable wheel speeds"
+                raise InputError("metrics", metric.name, allowed)
         if self.spacecraft is not None:
             self._check_attitude()
         elif self.reaction_wheel is not None:
@@ -163,7 +166,7 @@ class Setup:
         for event in self.events:
             if event.kind == "spin-down":
                 raise InputError("event.kind", event.kind, "'wheel-dead', or a gimbal's fault")
-        if self.integrator != "rk4":
+        if self.integrator != "rk4" and self.spacecraft is not None:
             raise InputError("integrator", self.integrator, "'rk4' for variable-speed CMGs")
         if self.spacecraft is not None:
             put(self, "units", (self.units or Units(0.0, 0.0, 0.0)).for_n(array.n))

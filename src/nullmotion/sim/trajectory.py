@@ -11,6 +11,7 @@ import numpy as np
 
 from nullmotion import rotation
 from nullmotion.array import momentum_state
+from nullmotion.sim import wheel_summary
 from nullmotion.sim.setup import Setup
 from nullmotion.spacecraft import faults
 from nullmotion.vscmg import dynamics
@@ -238,6 +239,7 @@ class Trajectory:
             **self._attitude(),
             **{key: float(value) for key, value in self.metrics.items()},
             **({"law_counts": dict(self.law_counts)} if self.law_counts else {}),
+            **self._wheels(),
             "status": list(self.status) or ["ok"],
             "backend": self.backend,
             "instruction_set": self.instruction_set,
@@ -252,6 +254,11 @@ class Trajectory:
             "final_euler_321_deg": yaw_pitch_roll.tolist(),
             "final_omega_BN_B_rad_s": self.omega_BN_B[-1].tolist(),
         }
+
+    def _wheels(self) -> dict[str, Any]:
+        if self.wheel_speed is None:
+            return {}
+        return {"wheels": wheel_summary.wheels(self), "limited": wheel_summary.limits(self)}
 
     def to_xarray(self) -> Any:
         """Return the run as an `xarray.Dataset` with units and conventions."""

@@ -66,7 +66,7 @@ def broken(run: Any, true: Parameters, rows: np.ndarray) -> Iterator[Broken]:
     for event in setup.events:
         if event.at < end:
             spans = np.array([[event.at, end]])
-            yield Broken("every motor works", spans, f"CMG {event.cmg}: {event.kind}")
+            yield Broken("every motor works", spans, f"CMG {event.cmg + 1}: {event.kind}")
 
 
 def _plant(run: Any) -> Iterator[tuple[str, str]]:

@@ -5,6 +5,7 @@ omega_s = s . omega and so on. Momenta of the whole, of a unit about its gimbal 
 wheel about its spin axis:
 
     H   = J_0 omega + sum_i [J_s s s^T + J_t t t^T + J_g g g^T] omega + J_g delta_dot g + I Omega s
+          + bias (of wheels that have failed and spin on)
     p_g = J_g (delta_dot + omega_g),     p_w = I (Omega + omega_s)
 
     H_dot = L in inertial space,     p_w_dot = u_w,
@@ -49,10 +50,9 @@ class Plant(NamedTuple):
         return self.inertia(a) @ omega + self.internal(a, rates, speed)
 
     def internal(self, a: Axes, rates: Any, speed: Any) -> Any:
-        """Return what units and wheels hold by turning against the body [N m s], (3,)."""
-        return (self.array.flywheels.inertia * speed) @ a.s + (
-            self.units.gimbal_inertia * rates
-        ) @ a.g
+        """Return what units and wheels hold by turning against the body, and the bias [N m s]."""
+        spinning = (self.array.flywheels.inertia * speed) @ a.s
+        return spinning + (self.units.gimbal_inertia * rates) @ a.g + self.array.momentum_bias
 
     def body_rate(self, a: Axes, momentum: Any, rates: Any, speed: Any) -> Any:
         """Return omega from H, gimbal rates and wheel speeds [rad/s], (3,)."""
@@ -63,7 +63,8 @@ class Plant(NamedTuple):
         u = self.units
         held = outer_sum(u.spin_inertia - self.array.flywheels.inertia, a.s)
         matrix = self.rest + held + outer_sum(u.transverse_inertia, a.t)
-        return linalg.solve(matrix, momentum - gimbal @ a.g - wheel @ a.s)
+        turning = gimbal @ a.g + wheel @ a.s + self.array.momentum_bias
+        return linalg.solve(matrix, momentum - turning)
 
     def gimbal_torque(self, a: Axes, omega: Any, wheel: Any) -> Any:
         """Return omega_t ((J_s - I - J_t) omega_s + p_w), gyroscopic, on the gimbals [N m]."""
@@ -94,7 +95,7 @@ def total_momentum(
         rates: Gimbal rates [rad/s], (k, n).
         speed: Wheel speeds [rad/s], (k, n).
     """
-    found = omega @ rest
+    found = omega @ rest + array.momentum_bias
     u, wheels = units, array.flywheels
     for i in range(array.n):
         s0, t0, g = array.spin_axes[i], array.transverse_axes[i], array.gimbal_axes[i]

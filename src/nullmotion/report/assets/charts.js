@@ -4,7 +4,7 @@
   // The names of instants stand above the charts.
   const named = Object.values(figures).some((f) => f.layout.annotations.some((a) => a.yref === "paper"));
   const BASE = {
-    margin: { l: 62, r: 12, t: named ? 24 : 8, b: 44 },
+    margin: { l: 70, r: 12, t: named ? 24 : 8, b: 44 },
     font: { family: "system-ui, -apple-system, Segoe UI, Roboto, Arial, sans-serif", size: 12, color: "#1b1f24" },
     paper_bgcolor: "#fff", plot_bgcolor: "#fff",
     showlegend: false, hovermode: false,

@@ -93,7 +93,7 @@ class Adaptive(Controller):
         return Estimates(np.zeros(6 + n), np.zeros(2 * n), np.zeros(3), 0.0)
 
     def step(self, obs: AttitudeObservation, state: Estimates) -> tuple[Any, Estimates]:
-        """Return the torque on the vehicle -(Y_1 theta_1 + k r + kp e + d), and what was learned."""
+        """Return the torque on the vehicle -(Y_1 theta_1 + k r + kp e + d), and the estimates."""
         errors = self._errors(obs)
         Y1 = self._regressor(obs, errors)
         on = obs.period * state.begun * (1.0 - obs.limited)
