@@ -9,9 +9,8 @@ from scipy.spatial import cKDTree
 
 from nullmotion.atlas.envelope_rings import Rings
 
-_SAMPLES = 100_000
-_KEPT = 0.5  # share of the samples that are kept, the most regular ones
-_NEAR = 24  # samples around a momentum
+_SAMPLES = 50_000
+_NEAR = 48  # samples around a momentum
 _APART = 0.15  # sine of half the angle between two starts that are not the same
 _LEAST = 1e-9  # added to the eigenvalues of A A^T, in units of the mean momentum squared
 _STEP = 0.7  # largest step of a gimbal [rad]
@@ -58,28 +57,31 @@ class Samples:
     measure: np.ndarray
     tree: cKDTree
 
-    def near(self, h: np.ndarray, count: int) -> np.ndarray:
-        """Return ``count`` angles around each momentum, (B, count, c): regular, and different."""
-        found = self.tree.query(h, _NEAR)[1]
-        angles, left = self.delta[found], self.measure[found]
-        rows, chosen = np.arange(len(h)), []
+    def near(self, h: np.ndarray, count: int, among: int = _NEAR) -> np.ndarray:
+        """Return ``count`` of the nearest angles of each momentum, (B, count, c).
+
+        The most regular one first, then those most unlike the ones before: each way to hold a
+        momentum is to be met, the nearly singular ones too.
+        """
+        found = self.tree.query(h, among)[1]
+        angles, rows = self.delta[found], np.arange(len(h))
+        best, chosen = self.measure[found].argmax(axis=1), []
+        unlike = np.full(found.shape, np.inf)
         for _ in range(count):
-            best = left.argmax(axis=1)
             chosen.append(angles[rows, best])
             apart = np.abs(np.sin(0.5 * (angles - chosen[-1][:, None]))).max(axis=2)
-            left = np.where(apart < _APART, 1e-3 * left, left)
-            left[rows, best] = -1.0
+            unlike = np.minimum(unlike, apart)
+            best = unlike.argmax(axis=1)
         return np.stack(chosen, axis=1)
 
 
 def sampled(rings: Rings) -> Samples:
-    """Return random angles, the less regular ones left out, with their mirror images."""
+    """Return random angles with their mirror images."""
     rng = np.random.default_rng(_SEED)
     delta = rng.uniform(-np.pi, np.pi, (_SAMPLES, len(rings.ring_of)))
     part, column = rings.parts(delta)
     measure = np.linalg.det(column.mT @ column)
-    kept = np.argsort(-measure)[: int(_KEPT * _SAMPLES)]
-    delta, h, measure = delta[kept], part[kept].sum(axis=1), measure[kept]
+    h = part.sum(axis=1)
     tree = cKDTree(np.concatenate([h, -h]))
     return Samples(np.concatenate([delta, delta + np.pi]), np.tile(measure, 2), tree)
 

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from nullmotion.cli import (
+    analyze,
     catalogue,
     compare,
     demo,
@@ -60,6 +61,7 @@ app.command("run")(run.run)
 app.command("rerun")(rerun.rerun)
 app.command("compare")(compare.compare)
 app.command("plan")(plan.plan)
+app.command("analyze")(analyze.analyze)
 app.command("guarantee")(guarantee.guarantee)
 app.add_typer(design.app, name="design")
 app.command("size")(size.size)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nullmotion.cli import options, screen
+from nullmotion.cli import analyze_screen, options, screen
 
 if TYPE_CHECKING:
     from nullmotion.atlas.analysis import Analysis
@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from nullmotion.sim import Trajectory
 
 RESULT, PAGE = "analysis.json", "atlas.html"
-FIGURES = {kind: f"atlas.{kind}" for kind in ("pdf", "png", "svg")}
+FIGURES = ("pdf", "png", "svg")
+_LEVEL = 0.5
 
 
 def analyze(
@@ -28,43 +29,90 @@ def analyze(
         ),
     ],
     out: options.Out = None,
+    gimbal: Annotated[
+        str | None,
+        typer.Option(
+            "--gimbal-deg",
+            metavar="A,B,...",
+            help="Gimbal angles to look at: singular or not, and what null motion can do. The "
+            "scenario's start by default.",
+        ),
+    ] = None,
+    level: Annotated[
+        float,
+        typer.Option(
+            "--torque-capability",
+            help="Torque of the guaranteed radius, over h0 times the rate limit.",
+        ),
+    ] = _LEVEL,
     figure: Annotated[
         str | None, typer.Option("--figure", metavar="pdf|png|svg", help="Draw a figure as well.")
     ] = None,
-    settings: options.Settings = None,
-    law_file: options.LawFile = None,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Leave out volume, failed CMGs and torque maps.")
+    ] = False,
     run: Annotated[
         bool, typer.Option("--run/--no-run", help="Fly the scenario, if there is one, and show it.")
     ] = True,
+    settings: options.Settings = None,
+    law_file: options.LawFile = None,
 ) -> None:
     """Find an array's singular surfaces, its envelope and the momentum it can rely on."""
     _checked_figure(figure)
-    options.load_law_file(law_file)
-    loaded = load(array, settings)
+    names, _ = options.load_law_file(law_file)
+    loaded = load(array, settings, names)
+    start = angles(gimbal, loaded)
     target = options.writable(out or Path("out") / f"{loaded.name}-atlas")
-    found = work_out(loaded)
     flown = fly(loaded) if run else None
-    show(found, loaded)
+    found = work_out(loaded, start, level, quick)
     write(found, loaded, flown, target, figure)
+    analyze_screen.show(found, loaded.title)
     typer.echo(f"Results in {target} (open {PAGE})")
 
 
-def load(array: str, settings: list[str] | None) -> ArrayFile:
+def load(array: str, settings: list[str] | None, law_names: list[str]) -> ArrayFile:
     """Return the array of a file or of a scenario's name."""
-    from nullmotion.scenario.array_file import array_file
+    from nullmotion.scenario.array_file import FLOWN, array_file
     from nullmotion.scenario.load import find
 
     source = find(array)
     values = options.values(settings, None)
+    if any(name in source.data for name in FLOWN):
+        return array_file(options.load(array, values, law_names).source)
     return array_file(source.over(values) if values else source)
 
 
-def work_out(loaded: ArrayFile) -> Analysis:
-    """Return the analysis, with a progress bar if it takes long."""
-    with screen.progress(f"Analysing {loaded.title}") as progress:
-        from nullmotion.atlas.analysis import analyse
+def angles(gimbal: str | None, loaded: ArrayFile) -> Any:
+    """Return the gimbal angles to look at [rad], (n,).
 
-        return analyse(loaded.array, progress=progress)
+    Raises:
+        InputError: For text that is not one number for each CMG.
+    """
+    import numpy as np
+
+    from nullmotion.errors import InputError
+
+    if gimbal is None:
+        return loaded.start
+    allowed = f"{loaded.array.n} angles in degrees, parted by commas"
+    try:
+        found = np.array([float(word) for word in gimbal.split(",")])
+    except ValueError:
+        raise InputError("--gimbal-deg", gimbal, allowed) from None
+    if found.shape != (loaded.array.n,) or not np.isfinite(found).all():
+        raise InputError("--gimbal-deg", gimbal, allowed)
+    return np.radians(found)
+
+
+def work_out(loaded: ArrayFile, start: Any, level: float, quick: bool) -> Analysis:
+    """Return the analysis, with a progress bar if it takes long."""
+    from nullmotion.atlas.analysis import analyse
+    from nullmotion.errors import InputError
+
+    if not 0 < level < float("inf"):
+        raise InputError("--torque-capability", level, "a number above 0")
+    with screen.progress(f"Analysing {loaded.title}") as progress:
+        return analyse(loaded.array, start, (level,), quick, progress)
 
 
 def fly(loaded: ArrayFile) -> Trajectory | None:
@@ -80,13 +128,23 @@ def write(
     found: Analysis, loaded: ArrayFile, flown: Trajectory | None, target: Path, figure: str | None
 ) -> None:
     """Write all files, or none."""
-    from nullmotion.report.atlas_page import atlas_page
+    from nullmotion.plot.atlas import atlas_figure
+    from nullmotion.report.analysis import analysis_page, shown
     from nullmotion.scenario.files import replacing
 
-    owned = (RESULT, PAGE, *FIGURES.values()) if (target / RESULT).is_file() else ()
+    scene = shown(found, loaded.start, flown)  # type: ignore[arg-type]
+    figures = [f"atlas.{kind}" for kind in FIGURES]
+    owned = (RESULT, PAGE, *figures) if (target / RESULT).is_file() else ()
     with replacing(target, owned) as new:
         (new / RESULT).write_text(found.to_json(), encoding="utf-8")
         text = loaded.source.effective_text()
-        atlas_page(found, new / PAGE, loaded.title, loaded.home, flown, text)
-        if figure is not None:
-            _draw(found, loaded, flown, new / FIGURES[figure])
+        analysis_page(new / PAGE, loaded.title, found, scene, flown, text)  # type: ignore[arg-type]
+        if figure is not None and scene is not None:
+            atlas_figure(scene, new / f"atlas.{figure}", loaded.title)
+
+
+def _checked_figure(figure: str | None) -> None:
+    from nullmotion.errors import InputError
+
+    if figure is not None and figure not in FIGURES:
+        raise InputError("--figure", figure, f"one of {', '.join(FIGURES)}")

@@ -1,4 +1,4 @@
-"""A file that describes an array: its ``[array]`` section alone, or a whole scenario."""
+"""A file that describes an array: ``[array]``, its angles in ``[initial]``, or a whole scenario."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ from pathlib import PurePath
 import numpy as np
 
 from nullmotion.array import CmgArray
-from nullmotion.scenario import array_checks, keys, objects
+from nullmotion.scenario import array_checks, keys, objects, start, start_checks
 from nullmotion.scenario.problems import MISSING
 from nullmotion.scenario.scenario import Scenario, checked
-from nullmotion.scenario.schema import About, ArraySection
+from nullmotion.scenario.schema import About, ArraySection, InitialSection
 from nullmotion.scenario.sections import SECTIONS
 from nullmotion.scenario.source import Source
 from nullmotion.scenario.validate import Validator
 
-_ALONE = ("array", "scenario")
-_FLOWN = ("law", "mission", "simulation")  # any of them: it is meant as a whole scenario
+_ALONE = ("array", "initial", "scenario")
+FLOWN = ("law", "mission", "simulation")  # any of them: it is meant as a whole scenario
 
 
 def _refused(name: str) -> str:
     if name not in SECTIONS:
         return keys.hint(name, SECTIONS).replace("key", "section", 1)
-    return "without [law], [mission] and [simulation] a file has [array] and [scenario] only"
+    return "without [law], [mission] and [simulation] a file has [array], [initial], [scenario]"
 
 
 @dataclass(frozen=True)
@@ -35,6 +35,7 @@ class ArrayFile:
         section: The checked ``[array]``.
         array: The array that works, without the failed CMGs.
         title: Title that the file gives, or its name.
+        initial: Where it starts from.
         scenario: The whole scenario; None when the file has an array alone.
     """
 
@@ -42,6 +43,7 @@ class ArrayFile:
     section: ArraySection
     array: CmgArray
     title: str
+    initial: InitialSection
     scenario: Scenario | None = None
 
     @property
@@ -50,9 +52,9 @@ class ArrayFile:
         return PurePath(self.source.name).stem or "array"
 
     @property
-    def home(self) -> np.ndarray:
-        """Gimbal angles of the layout without momentum, zero for axes of one's own [rad], (n,)."""
-        return objects.start(self.section, None, self.array.n)
+    def start(self) -> np.ndarray:
+        """Gimbal angles in the file, or those of the layout without momentum [rad], (n,)."""
+        return start.angles(self.section, self.initial, self.array)
 
 
 def array_file(source: Source) -> ArrayFile:
@@ -61,10 +63,10 @@ def array_file(source: Source) -> ArrayFile:
     Raises:
         ScenarioError: With everything that is wrong.
     """
-    if any(name in source.data for name in _FLOWN):
+    if any(name in source.data for name in FLOWN):
         scenario = checked(source)
         made = objects.array(scenario.array)
-        return ArrayFile(source, scenario.array, made, scenario.title, scenario)
+        return ArrayFile(source, scenario.array, made, scenario.title, scenario.initial, scenario)
     validator = Validator(source)
     for name in source.data:
         if name not in _ALONE:
@@ -74,9 +76,12 @@ def array_file(source: Source) -> ArrayFile:
         validator.raise_problems()
     section = validator.section("array")
     about = validator.section("scenario") if "scenario" in source.data else About()
+    initial = validator.section("initial") if "initial" in source.data else InitialSection()
     validator.raise_problems()
     array = array_checks.check(section, validator)
+    if array is not None:
+        start_checks.check(section, initial, array, validator)
     validator.raise_problems()
     assert array is not None
     title = about.title or PurePath(source.name).stem
-    return ArrayFile(source, section, array, title)
+    return ArrayFile(source, section, array, title, initial)

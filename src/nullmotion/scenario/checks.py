@@ -5,9 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from nullmotion.array import CmgArray
 from nullmotion.errors import InputError, UnknownNameError
 from nullmotion.scenario import (
     array_checks,
@@ -15,7 +12,7 @@ from nullmotion.scenario import (
     objects,
     requirements,
     spacecraft_checks,
-    start,
+    start_checks,
     vscmg_checks,
 )
 from nullmotion.scenario.construction import add_construction
@@ -31,7 +28,7 @@ def check(scenario: Scenario, validator: Validator) -> None:
     """Add to the validator what does not fit together."""
     array = array_checks.check(scenario.array, validator)
     if array is not None:
-        _check_start(scenario, array, validator)
+        start_checks.check(scenario.array, scenario.initial, array, validator)
         mission_checks.check(scenario, array, validator)
         spacecraft_checks.check(scenario, array, validator)
     requirements.check(scenario, validator)
@@ -59,43 +56,6 @@ def _check_cost(scenario: Scenario, v: Validator) -> None:
 
 def _cases(scenario: Scenario) -> list[tuple[Path, Any]]:
     return [(("compare", "case", i), case) for i, case in enumerate(scenario.cases)]
-
-
-def _check_start(scenario: Scenario, array: CmgArray, v: Validator) -> None:
-    section, angles = scenario.array, scenario.initial.gimbal_deg
-    momentum = scenario.initial.momentum_Nms
-    total = array.n + len(set(section.failed_cmgs))
-    if angles is not None and len(angles) not in (array.n, total):
-        v.add(
-            ("initial", "gimbal_deg"),
-            angles,
-            f"{_counts(array.n, total)} numbers, one for each CMG (this has {len(angles)})",
-        )
-        return
-    if momentum is not None:
-        _check_momentum(scenario, array, v)
-        return
-    delta = objects.start(section, angles, array.n)
-    low, high = array.angle_limits[:, 0], array.angle_limits[:, 1]
-    if np.any((delta < low - 1e-12) | (delta > high + 1e-12)):
-        value = np.round(np.degrees(delta), 6).tolist() if angles is None else angles
-        v.add(("initial", "gimbal_deg"), value, "angles within array.angle_limits_deg")
-
-
-def _check_momentum(scenario: Scenario, array: CmgArray, v: Validator) -> None:
-    path, initial = ("initial", "momentum_Nms"), scenario.initial
-    assert initial.momentum_Nms is not None
-    if initial.gimbal_deg is not None:
-        v.add(path, initial.momentum_Nms, "give one of gimbal_deg and momentum_Nms")
-    elif mission_checks.torque_dimensions(v, path, initial.momentum_Nms, array.m):
-        try:
-            start.angles(scenario.array, initial, array)
-        except InputError as error:
-            v.add(path, error.value, error.allowed)
-
-
-def _counts(n: int, total: int) -> str:
-    return str(n) if n == total else f"{n} or {total}"
 
 
 def _check_times(scenario: Scenario, v: Validator) -> None:
