@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip install -qq --disable-pip-version-check -c constrain
 INSTALL := $(PIP) --no-build-isolation -e
 PINS := pyproject.toml constraints.txt
 BENCHMARK := benchmarks/run.py
-PYTEST := $(BIN)/python -m pytest -n auto
+PYTEST := $(BIN)/python -m pytest -n auto --dist loadgroup
 MADE := build dist site docs/laws nullmotion-demo src/*.egg-info
 CACHES := .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis .benchmarks
 

@@ -55,9 +55,11 @@ def slew() -> Callable[..., Any]:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark as slow all but n evenly spread cases of tests marked ``sampled(n)``."""
+    """Mark as slow all but n evenly spread cases of ``sampled(n)``; keep dear files whole."""
     cases: dict[str, list[pytest.Item]] = {}
     for item in items:
+        if item.path.parent.name == "papers" or item.path.name.startswith("test_rover"):
+            item.add_marker(pytest.mark.xdist_group(item.path.stem))  # dear fixtures, made once
         if item.get_closest_marker("sampled"):
             cases.setdefault(item.nodeid.partition("[")[0], []).append(item)
     for group in cases.values():

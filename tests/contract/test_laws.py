@@ -417,7 +417,9 @@ ODD_ARRAYS = {
 
 
 @pytest.mark.parametrize("law", laws.names())
-@pytest.mark.parametrize("kind", ODD_ARRAYS)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(k, marks=pytest.mark.slow) if k == "twelve" else k for k in ODD_ARRAYS]
+)
 def test_odd_arrays_are_steered_or_refused_with_a_reason(law: str, kind: str) -> None:
     steering, array = laws.create(law), ODD_ARRAYS[kind]
     array = with_wheels(array) if steering.turns_wheels else array

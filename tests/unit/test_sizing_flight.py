@@ -56,6 +56,7 @@ SAME = [
 ]
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("text", "layout", "law", "skew", "h0", "rate"), SAME)
 def test_a_slew_settles_when_its_scenario_does(text, layout, law, skew, h0, rate):
     """The body turned in place of the axis, many runs in a kernel: the same motion."""
