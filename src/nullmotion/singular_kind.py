@@ -92,7 +92,7 @@ def kind(array: CmgArray, delta: np.ndarray, tolerance: float = TOLERANCE) -> Ki
     if found is None:
         return Kind.REGULAR
     weights = _weights(found.u.shape[1])
-    if _saturated(found, tolerance):
+    if len(saturating(found, tolerance)):
         return Kind.SATURATION
     value = np.linalg.eigvalsh(found.matrix(weights))
     if (value > tolerance).all(axis=1).any():
@@ -132,18 +132,19 @@ def _weights(q: int) -> np.ndarray:
     return np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
 
-def _saturated(found: Form, tolerance: float) -> bool:
-    """Return whether all rotors are on one side, for one u of the singular directions.
+def saturating(found: Form, tolerance: float = TOLERANCE) -> np.ndarray:
+    """Return weights (k, q) of singular directions that have all rotors on one side; or none.
 
     With two directions the borders of the angle in which such a u can be are normal to a rotor.
     """
     q = found.u.shape[1]
-    if q > 2:
-        return True
-    weights = _weights(1)
+    weights = _weights(1) if q == 1 else np.eye(q)
     if q == 2:
         normal = np.stack([-found.along[:, 1], found.along[:, 0]], axis=1)
         size = np.linalg.norm(normal, axis=1, keepdims=True)
         normal = normal[size[:, 0] > tolerance] / size[size[:, 0] > tolerance]
         weights = np.concatenate([normal, -normal])
-    return bool((weights @ found.along.T >= -tolerance).all(axis=1).any())
+    if q > 2:
+        return weights
+    there: np.ndarray = (weights @ found.along.T >= -tolerance).all(axis=1)
+    return weights[there]

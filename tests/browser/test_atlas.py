@@ -44,38 +44,6 @@ def atlas_file(tmp_path_factory) -> Path:
     return written(tmp_path_factory.mktemp("atlas") / "atlas.html", shown)
 
 
-@pytest.fixture
-def opened(browser):
-    """Open a file; the page says nothing on the console and asks for nothing but itself."""
-    pages = []
-
-    def go(path, width=1280, height=900, fragment="", quiet=True):
-        page = browser.new_page(viewport={"width": width, "height": height})
-        said, asked = [], []
-        page.on("console", lambda message: said.append((message.type, message.text)))
-        page.on("pageerror", lambda error: said.append(("error", str(error))))
-        page.on("request", lambda request: asked.append(request.url))
-        address = path.as_uri() + fragment
-
-        def only_itself(route):
-            if route.request.url.partition("#")[0] == path.as_uri():
-                route.continue_()
-            else:
-                route.abort()
-
-        page.route("**/*", only_itself)
-        page.goto(address)
-        page.wait_for_selector("#atlas[data-drawn]")
-        pages.append((page, said, asked, path.as_uri(), quiet))
-        return page
-
-    yield go
-    for shown, said, asked, address, quiet in pages:
-        assert [url.partition("#")[0] for url in asked] == [address]
-        assert [entry for entry in said if quiet or entry[0] == "error"] == []
-        shown.close()
-
-
 def told(page, key: str) -> str:
     return page.locator(f'[data-told="{key}"]').inner_text().replace("−", "-")
 

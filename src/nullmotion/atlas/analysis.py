@@ -13,7 +13,7 @@ from nullmotion.array.model import CmgArray
 from nullmotion.atlas import envelope
 from nullmotion.atlas.bounds import Bounds
 from nullmotion.atlas.guaranteed import LEVELS
-from nullmotion.atlas.radii import Failed, Radii, failures, parts, radii
+from nullmotion.atlas.sizes import Failed, Radii, failures, parts, radii
 from nullmotion.atlas.state import State, inspect
 from nullmotion.atlas.torque import TorqueMap, torque_map
 
@@ -93,7 +93,10 @@ def analyse(
         return Analysis(array, most, found, state=state)
     lost = failures(array, levels, part[1])
     volume = envelope.volume(array, progress=part[2])
-    return Analysis(array, most, found, volume, lost, _maps(array, part[3]), state)
+    maps = _maps(array, part[3])
+    if progress is not None:
+        progress(1.0)
+    return Analysis(array, most, found, volume, lost, maps, state)
 
 
 def _maps(array: CmgArray, progress: Progress | None) -> tuple[TorqueMap, ...]:

@@ -64,6 +64,10 @@ class Cells:
         """Return some of the cells."""
         return replace(self, face=self.face[chosen], box=self.box[chosen], seeds=self.seeds[chosen])
 
+    def seeded(self, seeds: np.ndarray) -> Cells:
+        """Return the cells with other seeds."""
+        return replace(self, seeds=seeds)
+
     def joined(self, other: Cells) -> Cells:
         """Return these cells and others of the same frames."""
         pairs = {k: (getattr(self, k), getattr(other, k)) for k in ("face", "box", "seeds")}

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -129,12 +130,12 @@ class _Attempt:
     def _try(
         self, left: np.ndarray, delta: np.ndarray, discs: bool
     ) -> tuple[np.ndarray, np.ndarray]:
-        good, sigma, U = envelope_inside.proven(self.rings, delta, self.hulls[left], discs)
-        better = sigma[:, 0] > self.best[left]
+        proofs = envelope_inside.proven(self.rings, delta, self.hulls[left], discs)
+        better = proofs.sigma > self.best[left]
         chosen = left[better]
-        self.best[chosen] = sigma[better, 0]
-        self.bottleneck[chosen] = (U / sigma[:, None] ** 2).mT[better]
-        return good, sigma[:, 0]
+        self.best[chosen] = proofs.sigma[better]
+        self.bottleneck[chosen] = proofs.bottleneck[better]
+        return proofs.good, proofs.sigma
 
     def _keep(self, left: np.ndarray, delta: np.ndarray, score: np.ndarray) -> None:
         column = np.full((len(self.inside), 1), -1.0)
@@ -152,5 +153,5 @@ class _Attempt:
         need[:, :-1] += np.abs(sag[:, None] @ self.bottleneck.mT).max(axis=2)
         slender = length < length.max(axis=1, keepdims=True) / _SLENDER
         axis = np.where(slender | (length == 0), -1.0, need).argmax(axis=1)
-        cells = replace(self.cells, seeds=seeds)
+        cells = self.cells.seeded(seeds)
         return Findings(self.inside, self.reached, cells, axis)

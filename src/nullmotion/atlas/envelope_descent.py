@@ -81,6 +81,8 @@ def smallest_near(rings: Rings, starts: Starts, h: np.ndarray, margin: float) ->
     known, gap = _sheets(rings, starts, known, h)
     farthest = _FIRST * float(np.linalg.norm(h))
     for _ in range(_ROUNDS):
+        if np.linalg.norm(gap, axis=1).min() <= margin:
+            break  # it is reachable after all
         step = _smallest(h, gap, 2 * margin, farthest) - h
         length = float(np.linalg.norm(step))
         if length < 0.1 * margin or farthest < 0.1 * margin:

@@ -4,7 +4,10 @@ Let delta be angles of the circles, A their Jacobian and A = U diag(sigma) V^T. 
 
     h(delta + x) = h(delta) + A x + q(x),    q = sum_i h_i (cos x_i - 1) + a_i (sin x_i - x_i)
 
-exactly, so that h(delta + x) = y where rho solves rho = diag(1/sigma) U^T (y - h(delta) - q(V rho)).
+exactly, so that h(delta + x) = y where rho solves
+
+    rho = diag(1/sigma) U^T (y - h(delta) - q(V rho)).
+
 The right-hand side is continuous. It maps the box |rho_k| <= R_k into itself if for every k
 
     Y_k + Q_k(R) <= sigma_k R_k,    Y_k >= |u_k . (y - h(delta))|,    Q_k >= |u_k . q|
@@ -21,86 +24,121 @@ Q <= max h0 R^2 / 2, and R = sigma_min / max h0.)
 A ring with width may be looked at as a disc instead of two circles: v = x s + y t is linear, two
 columns s and t without curvature, good as long as (x, y) stays between the ring's edges.
 
-R is found by repetition from below and confirmed with room for rounding.
+R is found by repetition from below and confirmed with room for rounding. Source without
+branches, compiled for many hulls at once.
 """
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
+from nullmotion import linalg, ops
+from nullmotion.atlas.envelope_lanes import Lanes
 from nullmotion.atlas.envelope_rings import Rings
 
-_ROUNDS = 12
+_ROUNDS = 8
 _ROOM = 1.02  # by which a box is wider than the last round asked for
 _SAFE = 1.0 + 1e-9  # more than the rounding of the bounds, relative
-_TINY = 1e-11  # more than that of the momenta, in units of the mean momentum
+_TINY = 1e-10  # more than that of the momenta, in units of the mean momentum
 _WIDEST = 3.0  # [rad]
-_REGULAR = 1e-10  # least sigma^2 that rounding leaves accurate
+_LEAST = 1e-4  # least sigma: rounding of A V is below _TINY from there on
 
 
-def proven(
-    rings: Rings, delta: np.ndarray, hulls: np.ndarray, discs: bool = False
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return which hulls (B, p, m) are reachable around angles (B, c), with sigma and U.
+class Proofs(NamedTuple):
+    """What is shown about hulls from one set of angles each.
+
+    Attributes:
+        good: Whether all of the hull is reachable for certain, (B,).
+        sigma: Least singular value of the columns, (B,).
+        bottleneck: U diag(1/sigma^2), transposed: how much of the box's room an edge of the
+            hull takes, (B, m, m).
+    """
+
+    good: np.ndarray
+    sigma: np.ndarray
+    bottleneck: np.ndarray
+
+
+def proven(rings: Rings, delta: np.ndarray, hulls: np.ndarray, discs: bool = False) -> Proofs:
+    """Return which hulls (B, p, m) are reachable around angles (B, c).
 
     Args:
         rings: The array's rings.
         delta: Angles of the circles that hold a momentum in or near each hull.
         hulls: Corners.
         discs: Whether rings with width are looked at as discs.
-
-    Returns:
-        Whether it is proven (B,), the singular values of the columns in rising order (B, m),
-        and their left vectors as columns (B, m, m).
     """
-    part, column = rings.parts(delta)
-    momentum = part.sum(axis=1)
-    if discs:
-        part, column = _as_discs(rings, delta, part, column)
-    square, U = np.linalg.eigh(column.mT @ column)
-    sigma = np.sqrt(np.maximum(square, 1e-14))
-    along, bend = column @ U, part @ U  # (B, c, m)
-    V = along / sigma[:, None]
-    Y = np.abs((hulls - momentum[:, None]) @ U).max(axis=1) * _SAFE + _TINY
-    bent = (V[:, None] * bend.mT[..., None]).mT @ V[:, None]  # (B, k, j, l)
-    terms = np.abs(V), np.abs(bent), np.abs(along), np.abs(bend)
-    wide = rings.inner < rings.outer
-    pairs = np.flatnonzero(wide[rings.ring_of]).reshape(-1, 2) if discs else np.zeros((0, 2), int)
-    good = _settles(Y, sigma, terms, pairs) & (square[:, 0] > _REGULAR)
-    return good, sigma, U
+    p, m, c = hulls.shape[1], rings.m, delta.shape[1]
+    if not discs:
+        lanes = Lanes(_from_angles, (rings.circles,), ((c,), (p, m)))
+        good, sigma, bottleneck = lanes(delta, hulls)
+    else:
+        part, column, joined = _as_discs(rings, delta)
+        around = hulls - rings.momentum(delta)[:, None]
+        lanes = Lanes(_from_columns, (joined,), ((c, m), (c, m), (p, m)))
+        good, sigma, bottleneck = lanes(part, column, around)
+    return Proofs(good > 0, sigma, bottleneck)
 
 
-def _settles(
-    Y: np.ndarray, sigma: np.ndarray, terms: tuple[np.ndarray, ...], pairs: np.ndarray
-) -> np.ndarray:
-    """Return where a box is mapped into itself, (B,)."""
+def _from_angles(circles: Any, delta: Any, hull: Any) -> Any:
+    cosine, sine = ops.cos(delta)[:, None], ops.sin(delta)[:, None]
+    part = cosine * circles[:, 0] + sine * circles[:, 1]
+    column = cosine * circles[:, 1] - sine * circles[:, 0]
+    return _from_columns(np.zeros(len(delta)), part, column, hull - part.sum(axis=0))
+
+
+def _from_columns(joined: Any, part: Any, column: Any, hull: Any) -> Any:
+    """Return whether a hull (p, m) around h(delta) is reachable, sigma_m, and the bottleneck.
+
+    Args:
+        joined: Above 0 for the first of two columns that are one disc, (c,).
+        part: h_i, (c, m).
+        column: a_i, (c, m).
+        hull: y - h(delta) at the corners.
+    """
+    found = linalg.svd(column.T)
+    sigma, U = ops.maximum(found.s, _LEAST), found.u
+    axes = range(len(sigma))
+    Y = np.array([ops.amax(ops.absolute(hull @ U[:, k])) for k in axes]) * _SAFE + _TINY
+    along, bend = column @ U, part @ U  # (c, m)
+    V = along / sigma
+    bent = [[[(V[:, j] * V[:, l] * bend[:, k]).sum() for l in axes] for j in axes] for k in axes]
+    terms = [ops.absolute(x) for x in (V, np.array(bent), along, bend)]
+    good = ops.where(ops.less(_LEAST, found.s[-1]), _settles(Y, sigma, terms, joined), 0.0)
+    return good, found.s[-1], (U / (sigma * sigma)).T
+
+
+def _settles(Y: Any, sigma: Any, terms: list[Any], joined: Any) -> Any:
+    """Return 1 where a box is mapped into itself, else 0."""
     V, bent, along, bend = terms
-    R, good = Y / sigma, np.zeros(len(Y), bool)
-    for k in range(_ROUNDS):
+    R, good = Y / sigma, 0.0
+    for _ in range(_ROUNDS):
         box = R * _ROOM
-        X = (V @ box[..., None])[..., 0]
-        second = 0.5 * np.einsum("bkjl,bj,bl->bk", bent, box, box)
-        third = ((X**3)[:, None] @ along)[:, 0] / 6 + ((X**4)[:, None] @ bend)[:, 0] / 24
+        X = V @ box
+        second = 0.5 * ((bent @ box) @ box)
+        third = (X**3) @ along / 6 + (X**4) @ bend / 24
         R = (Y + (second + third) * _SAFE) / sigma
-        fits = (box >= R).all(axis=1)
-        for i, j in pairs:
-            fits &= np.hypot(X[:, i], X[:, j]) <= 1.0
-        good |= fits
-        R = np.minimum(R, _WIDEST)
-        if k > 2 and (good | (R >= _WIDEST).any(axis=1)).all():
-            break
+        fits = 1.0
+        for k in range(len(box)):
+            fits = ops.where(ops.less_equal(R[k], box[k]), fits, 0.0)
+        for i in range(len(X) - 1):
+            room = joined[i] * (X[i] * X[i] + X[i + 1] * X[i + 1])
+            fits = ops.where(ops.less_equal(room, 1.0), fits, 0.0)
+        good = ops.maximum(good, fits)
+        R = ops.minimum(R, _WIDEST)
     return good
 
 
-def _as_discs(
-    rings: Rings, delta: np.ndarray, part: np.ndarray, column: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def _as_discs(rings: Rings, delta: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return parts and columns with each pair of circles replaced by s and t, times the slack.
 
     The slack is how far (x, y) may move before it meets an edge of its ring: a displacement of
-    1 of the two scaled columns together.
+    1 of the two scaled columns together. The third is 1 for the first circle of each pair.
     """
-    part, column = part.copy(), column.copy()
+    part, column = rings.parts(delta)
+    joined = np.zeros(delta.shape[1])
     for k in np.flatnonzero(rings.inner < rings.outer):
         i, j = np.flatnonzero(rings.ring_of == k)
         outer, inner = rings.outer[k], rings.inner[k]
@@ -111,4 +149,5 @@ def _as_discs(
             slack = np.minimum(slack, np.maximum(size - inner, 0.0))
         column[:, (i, j)] = (slack - _TINY).clip(0.0)[:, None, None] * rings.frames[k]
         part[:, (i, j)] = 0.0
-    return part, column
+        joined[i] = 1.0
+    return part, column, joined

@@ -19,12 +19,15 @@ depth of that hole falls with the square of the sector's width, so that few sect
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from nullmotion import linalg, ops
+from nullmotion.atlas.envelope_lanes import Lanes
 from nullmotion.atlas.envelope_rings import Rings
 
-_ROUNDS = 40  # of Frank and Wolfe
+_ROUNDS = (8, 32)  # of Frank and Wolfe; the second for those not yet separated
 _MARGIN = 1e-10  # of a separation, in units of the mean momentum
 _REACHED = 1e-12  # distance at which a hull is reachable
 
@@ -91,44 +94,67 @@ def _separate(
     rings: Rings, sets: _Sectors, hulls: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return which are separated, which reached, how deep in holes (I, k), and the last u."""
-    separated, u = np.zeros(len(hulls), bool), sets.u.copy()
-    point, z = _extreme(rings, sets, hulls, u)
-    active = np.arange(len(hulls))
-    for _ in range(_ROUNDS):
-        gap = point[active] - _sum(rings, z[active])
-        size = np.linalg.norm(gap, axis=1)
-        u[active] = gap / np.maximum(size, 1e-300)[:, None]
-        ahead, extreme = _extreme(rings, sets.take(active), hulls[active], u[active])
-        farthest = ahead - _sum(rings, extreme)
-        separated[active] = np.sum(u[active] * farthest, axis=1) > _MARGIN
-        change = farthest - gap
-        length = np.maximum(np.sum(change * change, axis=1), 1e-300)
-        share = np.clip(-np.sum(gap * change, axis=1) / length, 0.0, 1.0)[:, None]
-        point[active] += share * (ahead - point[active])
-        z[active] += share[..., None] * (extreme - z[active])
-        active = active[~separated[active] & (size > _REACHED)]
-        if len(active) == 0:
+    count, k, m = len(hulls), len(rings.inner), rings.m
+    shapes = ((m,), (m,), (k, 2), (), (), hulls.shape[1:], (k, 2), (k, 2))
+    lanes = Lanes(_round, (rings.frames, rings.outer, rings.inner), shapes)
+    centre, width = (np.stack([np.cos(x), np.sin(x)], axis=2) for x in (sets.centre, sets.width))
+    fixed = hulls, centre, width
+    state = [sets.u, np.zeros((count, m)), np.zeros((count, k, 2)), np.full(count, -np.inf)]
+    state = list(lanes(*state, np.ones(count), *fixed)[:4])
+    left = np.arange(count)
+    for rounds in _ROUNDS:
+        start = [x[left] for x in (*state, np.zeros(count), *fixed)]
+        for whole, part in zip(state, lanes(*start, rounds=rounds, back=4), strict=True):
+            whole[left] = part
+        left = left[state[3][left] <= _MARGIN]
+        if len(left) == 0:
             break
-    hole = rings.inner - np.linalg.norm(z, axis=2)
-    gap = np.linalg.norm(point - _sum(rings, z), axis=1)
+    u, point, z, best = state
+    gap = np.linalg.norm(point - np.einsum("ikr,krm->im", z, rings.frames), axis=1)
+    hole, separated = rings.inner - np.linalg.norm(z, axis=2), best > _MARGIN
     reached = ~separated & (hole.max(axis=1) < _REACHED) & (gap < 1e-6)
     return separated, reached, hole, u
 
 
-def _extreme(
-    rings: Rings, sets: _Sectors, hulls: np.ndarray, u: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the hulls' points with least y . u (I, m), the sectors' with greatest (I, k, 2)."""
-    rows = np.arange(len(u))
-    ahead = hulls[rows, (hulls @ u[..., None])[..., 0].argmin(axis=1)]
-    along = np.einsum("krm,im->ikr", rings.frames, u)
-    star = np.arctan2(along[..., 1], along[..., 0])
-    aside = (star - sets.centre + np.pi) % (2 * np.pi) - np.pi
-    angle = sets.centre + np.clip(aside, -sets.width, sets.width)
-    radius = np.where(np.cos(star - angle) >= 0, rings.outer, rings.inner)
-    return ahead, radius[..., None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+def _round(
+    frames: Any, outer: Any, inner: Any,
+    u: Any, point: Any, z: Any, best: Any, first: Any, hull: Any, centre: Any, width: Any,
+) -> Any:  # fmt: skip
+    """Return u, point, z and the best separation after a round; source.
+
+    Args:
+        frames: Of the rings, (k, 2, m); with outer and inner, (k,).
+        u: Direction that is tried, (m,).
+        point: Point of the hull, (m,).
+        z: Points of the sectors' convex hulls, (k, 2).
+        best: Greatest separation so far.
+        first: 1 to begin with what is farthest along u.
+        hull: Corners, (p, m).
+        centre: Cosine and sine of c, (k, 2).
+        width: Cosine and sine of w, (k, 2).
+    """
+    ahead, value = hull[0], hull[0] @ u
+    for corner in hull[1:]:
+        size = corner @ u
+        ahead = ops.where(ops.less(size, value), corner, ahead)
+        value = ops.minimum(size, value)
+    rings = zip(frames, outer, inner, centre, width, strict=True)
+    extreme = np.stack([_farthest(f @ u, *ring) for f, *ring in rings])
+    total = sum(x @ f for x, f in zip(extreme, frames, strict=True))
+    best = ops.maximum(u @ (ahead - total), best)
+    gap = point - sum(x @ f for x, f in zip(z, frames, strict=True))
+    change = ahead - total - gap
+    share = -(gap @ change) / ops.maximum(change @ change, 1e-300)
+    share = ops.where(ops.less(0.0, first), 1.0, ops.clip(share, 0.0, 1.0))
+    point, z, gap = point + share * (ahead - point), z + share * (extreme - z), gap + share * change
+    return gap / ops.maximum(linalg.norm(gap), 1e-300), point, z, best
 
 
-def _sum(rings: Rings, z: np.ndarray) -> np.ndarray:
-    total: np.ndarray = np.einsum("ikr,krm->im", z, rings.frames)
-    return total
+def _farthest(along: Any, outer: Any, inner: Any, centre: Any, width: Any) -> Any:
+    """Return the point of a sector with the greatest product with a vector, (2,); source."""
+    size = ops.maximum(linalg.norm(along), 1e-300)
+    cosine, sine = width
+    side = ops.copysign(sine, centre[0] * along[1] - centre[1] * along[0])
+    edge = cosine * centre + side * np.stack([-centre[1], centre[0]])
+    way = ops.where(ops.less(along @ centre, size * cosine), edge, along / size)
+    return way * ops.where(ops.less(way @ along, 0.0), inner, outer)

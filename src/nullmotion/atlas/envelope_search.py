@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from nullmotion import linalg, ops
+from nullmotion.atlas.envelope_lanes import Lanes
 from nullmotion.atlas.envelope_rings import Rings
 
 _SAMPLES = 50_000
@@ -25,22 +28,30 @@ def solved(
 
     The first ``climbing`` steps have null motion up the gradient of log det(A A^T) beside them.
     """
-    spare = delta.shape[1] > rings.m
-    for k in range(steps):
-        part, column = rings.parts(delta)
-        gram = column.mT @ column + _LEAST * np.eye(rings.m)
-        inverse = np.linalg.inv(gram)
-        back = column @ inverse  # (B, c, m): A^+
-        step = (back @ (h - part.sum(axis=1))[..., None])[..., 0]
-        if spare and k < climbing:
-            gradient = -2 * np.sum(back * part, axis=2)
-            lost = (column.mT @ gradient[..., None])[..., 0]
-            null = gradient - (back @ lost[..., None])[..., 0]
-            size = np.linalg.norm(null, axis=1, keepdims=True)
-            step = step + null * np.minimum(_CLIMB, _CLIMB / np.maximum(size, 1e-12))
-        greatest = np.abs(step).max(axis=1, keepdims=True)
-        delta = delta + step * np.minimum(1.0, _STEP / np.maximum(greatest, 1e-12))
+    lanes = Lanes(_step, (rings.circles,), ((delta.shape[1],), (rings.m,), ()))
+    climbing = min(climbing, steps)
+    for rounds, climb in ((climbing, 1.0), (steps - climbing, 0.0)):
+        if rounds:
+            delta = lanes(delta, h, np.full(len(h), climb), rounds=rounds, back=1)
     return delta
+
+
+def _step(circles: Any, delta: Any, h: Any, climb: Any) -> Any:
+    """Return angles after a step; source."""
+    cosine, sine = ops.cos(delta)[:, None], ops.sin(delta)[:, None]
+    part = cosine * circles[:, 0] + sine * circles[:, 1]
+    column = cosine * circles[:, 1] - sine * circles[:, 0]
+    gram = column.T @ column + _LEAST * np.eye(len(h))
+    adjugate = linalg.adjugate(gram)
+    back = column @ (adjugate * (1.0 / (gram[0] @ adjugate[:, 0])))  # (c, m): A^+
+    step = back @ (h - part.sum(axis=0))
+    if len(delta) > len(h):
+        gradient = -2 * (back * part).sum(axis=1)
+        null = gradient - back @ (column.T @ gradient)
+        size = ops.maximum(linalg.norm(null), 1e-12)
+        step = step + climb * ops.minimum(_CLIMB, _CLIMB / size) * null
+    greatest = ops.maximum(ops.amax(ops.absolute(step)), 1e-12)
+    return delta + step * ops.minimum(1.0, _STEP / greatest)
 
 
 @dataclass(frozen=True, eq=False)

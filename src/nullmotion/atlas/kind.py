@@ -25,7 +25,7 @@ EDGE = 1e-9  # least |radius of curvature| over the mean momentum that is not an
 def codes(
     array: CmgArray, signs: np.ndarray, radii: np.ndarray, rounding: np.ndarray, free: np.ndarray
 ) -> np.ndarray:
-    """Return the types of the points of one sheet as places in `KINDS`, (P,).
+    """Return the types of singular points as places in `KINDS`, (P,).
 
     Where Q is semidefinite the null motion is settled by higher orders: on the lines between
     elliptic and hyperbolic, and all over sheets that shrink to a curve or a point because
@@ -34,13 +34,14 @@ def codes(
 
     Args:
         array: The array.
-        signs: epsilon of the sheet, (n,).
+        signs: epsilon of a whole sheet, (n,), or of each point, (P, n).
         radii: Upper triangles of C, (P, m (m - 1) / 2).
         rounding: Sum of |C_i| of which C is the difference, (P,).
         free: CMGs with u along the gimbal axis or without momentum, (P, n): on no side of u.
     """
     working = np.asarray(array.h0) > 0
-    above, below = int(np.sum(signs[working] > 0)), int(np.sum(signs[working] < 0))
+    above = np.sum(signs[..., working] > 0, axis=-1)
+    below = np.sum(signs[..., working] < 0, axis=-1)
     least = EDGE * float(array.mean_momentum) + 1e-14 * rounding
     plus, minus = _inertia(radii, array.m, least)
     flat = array.m - 1 - plus - minus
@@ -49,11 +50,9 @@ def codes(
     code = np.full(radii.shape[:-1], KINDS.index(Kind.ELLIPTIC), np.int8)
     code[flat > 0] = KINDS.index(Kind.DEGENERATE)
     code[(positive > 0) & (negative > 0)] = KINDS.index(Kind.HYPERBOLIC)
-    if above == 0 or below == 0:
-        code[...] = KINDS.index(Kind.SATURATION)
-        return code
+    code[np.broadcast_to((above == 0) | (below == 0), code.shape)] = KINDS.index(Kind.SATURATION)
     rim = np.flatnonzero((free & working).any(axis=1))
-    side = np.where(free[rim], 0.0, signs)
+    side = np.where(free[rim], 0.0, np.broadcast_to(signs, free.shape)[rim])
     code[rim[(side >= 0).all(axis=1) | (side <= 0).all(axis=1)]] = KINDS.index(Kind.SATURATION)
     return code
 

@@ -104,12 +104,22 @@ def escapable(array: CmgArray, delta: Any, least: float = SINGULAR, starts: int 
         InputError: As `component`.
     """
     angles = checked_angles(array, delta, single=True)
-    what = kind(array, angles)
+    known = close_by(kind(array, angles), least)
+    if known is not None:
+        return known
+    return component(array, delta, starts).best["sigma_min"].value > least
+
+
+def close_by(what: Kind, least: float = SINGULAR) -> bool | None:
+    """Return whether null motion leads to sigma_min above ``least``, by the type alone.
+
+    None where that depends on the whole component.
+    """
     if what in (Kind.SATURATION, Kind.ELLIPTIC):
         return False
     if what in (Kind.REGULAR, Kind.HYPERBOLIC) and least <= SINGULAR:
         return True
-    return component(array, delta, starts).best["sigma_min"].value > least
+    return None
 
 
 def _spread(found: Component, kept: np.ndarray, n: int) -> Component:

@@ -31,6 +31,24 @@ def patterns(array: CmgArray) -> np.ndarray:
     return signs
 
 
+def mixed(array: CmgArray) -> np.ndarray:
+    """Return the sign patterns that can have elliptic points inside, (k, n).
+
+    Not those of one sign; nor with m of either sign or more: Q has at least a - (m - 1) positive
+    and b - (m - 1) negative eigenvalues; nor with two CMGs of equal momentum and parallel axes
+    that cancel: turning both alike is a null motion with x^T Q x = 0.
+    """
+    signs = patterns(array)
+    above, below = np.sum(signs > 0, axis=1), np.sum(signs < 0, axis=1)
+    kept = (above > 0) & (below > 0) & ((above < array.m) | (below < array.m))
+    h0 = np.asarray(array.h0, float)
+    parallel = np.abs(array.gimbal_axes @ array.gimbal_axes.T) > 1 - 1e-12
+    equal = np.abs(h0[:, None] - h0) < 1e-12 * array.mean_momentum
+    for i, j in np.argwhere(np.triu(parallel & equal, 1)):
+        kept &= signs[:, i] == signs[:, j]
+    return signs[kept]
+
+
 def checked_signs(array: CmgArray, signs: Any) -> np.ndarray:
     """Return signs (..., n) as floats.
 

@@ -132,7 +132,8 @@ def write(
     from nullmotion.report.analysis import analysis_page, shown
     from nullmotion.scenario.files import replacing
 
-    scene = shown(found, loaded.start, flown)  # type: ignore[arg-type]
+    home = loaded.start if found.state is None else found.state.delta
+    scene = shown(found, home, flown)  # type: ignore[arg-type]
     figures = [f"atlas.{kind}" for kind in FIGURES]
     owned = (RESULT, PAGE, *figures) if (target / RESULT).is_file() else ()
     with replacing(target, owned) as new:

@@ -8,6 +8,7 @@ from nullmotion.cli import screen
 
 if TYPE_CHECKING:
     from nullmotion.atlas.analysis import Analysis
+    from nullmotion.report.atlas_numbers import Number
 
 _HEAD = ("Quantity", "Lower bound", "Upper bound", "Unit", "Over mean h0", "What it is")
 
@@ -18,7 +19,7 @@ def show(found: Analysis, title: str) -> None:
     from nullmotion.report.atlas_state import state_rows
 
     console = screen.console()
-    cells = [row.cells() for row in number_rows(found)]
+    cells = [_cells(row) for row in number_rows(found)]
     console.print(screen.table(title, _HEAD, cells, numeric=(1, 2, 4)))
     if found.failures:
         head, rows = failure_rows(found)
@@ -26,3 +27,12 @@ def show(found: Analysis, title: str) -> None:
         console.print(screen.table(name, head, rows, numeric=(1, 2, 3, 4)))
     if found.state is not None:
         console.print(screen.table("State looked at", ("", ""), state_rows(found.state)))
+
+
+def _cells(row: Number) -> list[str]:
+    from nullmotion.report.wording import number
+
+    bounds = [number(value, 6) for value in (row.lower, row.upper)]
+    known = row.lower is not None and row.upper is not None
+    share = 0.5 * (row.lower + row.upper) / row.scale if known else None  # type: ignore[operator]
+    return [row.name, *bounds, row.unit, number(share), row.note]

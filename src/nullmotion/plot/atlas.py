@@ -10,19 +10,22 @@ import numpy as np
 
 from nullmotion.errors import InputError
 from nullmotion.plot import style
+from nullmotion.plot.atlas_flat import LINE, plane, singular_lines
 from nullmotion.plot.atlas_looks import LOOKS, Look
+from nullmotion.plot.atlas_maps import map_panel, most_capability
 from nullmotion.plot.atlas_perspective import perspective
-from nullmotion.plot.atlas_pieces import Pieces, cut, pieces
+from nullmotion.plot.atlas_pieces import Pieces, pieces
 from nullmotion.plot.atlas_view import Ball, Motion, Scene
 from nullmotion.plot.draw import SUFFIXES
-from nullmotion.plot.quantities import basis_names
 
 MOST_POINTS = 120_000  # of all sheets of a scene for a figure
-_LINE = 0.55  # width in points of a line that is 1 px wide on screen
+_WIDTH = 2 * style.PANEL_WIDTH_IN
+_LONG = 45  # characters of a legend's entry that leave room for two columns only
+_MAPS = 2.3  # height of a row of maps [in]
 
 
 def atlas_figure(scene: Scene, path: str | Path, title: str = "") -> Path:
-    """Draw an array's singular surfaces: in perspective, and cut through the origin.
+    """Draw an array's singular surfaces: in perspective, and cut through the middle; torque maps.
 
     Args:
         scene: What is drawn; radii as circles, motions as lines.
@@ -54,27 +57,54 @@ def _sheet(scene: Scene, title: str) -> Any:
     from matplotlib.figure import Figure
 
     solid, handles = scene.array.m == 3, _handles(scene)
-    size = style.PANEL_WIDTH_IN * (2 if solid else 1.5)
-    figure = Figure(figsize=(size, size + 0.35 + 0.17 * len(handles) / 2), layout="constrained")
-    if solid:
-        perspective(figure.add_subplot(2, 2, 1), scene)
-        made = pieces(scene.sheets)
-        for k, place in enumerate((2, 3, 4)):
-            _plane(figure.add_subplot(2, 2, place), scene, made, k)
-    else:
-        _lines(figure.add_subplot(), scene)
+    shown = scene.maps if most_capability(scene) > 0 else ()
+    columns = 3 if solid and max(len(h.get_label()) for h in handles) < _LONG else 2
+    legend = 0.2 + 0.16 * -(-len(handles) // columns)
+    figure = Figure(figsize=(_WIDTH, _height(solid, len(shown)) + legend), layout="constrained")
+    made = pieces(scene.every) if solid else None
+    below = _planes(figure, scene, made, len(shown)) if made else _flat_pair(figure, scene, shown)
+    if shown:
+        drawn = [map_panel(a, scene, s, made) for a, s in zip(below, shown, strict=True)]
+        label = "Torque capability [N m]"
+        figure.colorbar(drawn[0], ax=below, label=label, aspect=20, shrink=0.8)
     if title:
         figure.suptitle(title, fontsize=10, fontweight="bold", x=0.01, ha="left")
-    figure.legend(handles=handles, loc="outside lower center", ncols=3 if solid else 2)
+    figure.legend(handles=handles, loc="outside lower center", ncols=columns)
     return figure
+
+
+def _height(solid: bool, maps: int) -> float:
+    """Return the height of the panels [in]: two rows of two, one of maps, or one row alone."""
+    if not solid:
+        return _WIDTH / 2 if maps else 0.75 * _WIDTH
+    return _WIDTH + (_MAPS if maps else 0.0)
+
+
+def _planes(figure: Any, scene: Scene, made: Pieces, maps: int) -> list[Any]:
+    """Draw a view and three cuts; return the places for maps below."""
+    ratios = (_WIDTH, _MAPS)[: 2 if maps else 1]
+    rows = figure.add_gridspec(len(ratios), 1, height_ratios=ratios)
+    above = rows[0].subgridspec(2, 2)
+    perspective(figure.add_subplot(above[0, 0]), scene)
+    for axis, place in enumerate((above[0, 1], above[1, 0], above[1, 1])):
+        plane(figure.add_subplot(place), scene, made, axis)
+    below = rows[1].subgridspec(1, maps) if maps else ()
+    return [figure.add_subplot(place) for place in below]
+
+
+def _flat_pair(figure: Any, scene: Scene, shown: tuple[Any, ...]) -> list[Any]:
+    """Draw the singular lines of two torque dimensions; return the places for maps beside."""
+    first, *others = figure.subplots(1, 1 + len(shown), squeeze=False)[0]
+    singular_lines(first, scene)
+    return list(others)
 
 
 def _handles(scene: Scene) -> list[Any]:
     from matplotlib.lines import Line2D
 
-    found = np.unique(np.concatenate([sheet.kind for sheet in scene.sheets]))
+    found = np.unique(np.concatenate([sheet.kind for sheet in scene.every]))
     made = [
-        Line2D([], [], color=look.colour, lw=_LINE * look.width + 0.4, label=_name(look))
+        Line2D([], [], color=look.colour, lw=LINE * look.width + 0.4, label=_name(look))
         for k, look in enumerate(LOOKS)
         if k in found
     ]
@@ -87,50 +117,3 @@ def _handles(scene: Scene) -> list[Any]:
 
 def _name(look: Look) -> str:
     return f"{look.name} ({look.meaning})"
-
-
-def _plane(axes: Any, scene: Scene, made: Pieces, axis: int) -> None:
-    """Draw the cut across one torque axis, through the middle of the envelope."""
-    from matplotlib.collections import LineCollection
-
-    a, b = (k for k in range(3) if k != axis)
-    at = float(scene.middle[axis])
-    found = cut(made, np.eye(3)[axis], at)
-    for k, look in enumerate(LOOKS):
-        ends = found.ends[found.kind == k][:, :, [a, b]]
-        width = _LINE * look.width
-        lines = LineCollection(ends, colors=look.colour, linewidths=width, capstyle="round")
-        axes.add_collection(lines)
-    names = basis_names(scene.array.torque_axes)
-    _flat(axes, scene, a, b, f"Cut at h{names[axis]} = {at:.3g}")
-
-
-def _lines(axes: Any, scene: Scene) -> None:
-    """Draw the singular lines of an array with two torque dimensions."""
-    from matplotlib.collections import LineCollection
-
-    for sheet in scene.sheets:
-        for k, look in enumerate(LOOKS):
-            ends = sheet.momentum[sheet.cells[sheet.kind[sheet.cells[:, 0]] == k]]
-            width = _LINE * look.width
-            axes.add_collection(LineCollection(ends, colors=look.colour, linewidths=width))
-    _flat(axes, scene, 0, 1, "Singular lines")
-
-
-def _flat(axes: Any, scene: Scene, a: int, b: int, title: str) -> None:
-    from matplotlib.patches import Circle
-
-    for ball in scene.balls:
-        dash = style.LINE_STYLES[ball.dash]
-        circle = Circle(
-            scene.middle[[a, b]], ball.radius, fill=False, color=ball.colour, ls=dash, lw=1.1
-        )
-        axes.add_patch(circle)
-    for motion in scene.motions:
-        dash = style.LINE_STYLES[motion.dash]
-        axes.plot(motion.momentum[:, a], motion.momentum[:, b], color=motion.colour, ls=dash)
-    names, most = basis_names(scene.array.torque_axes), 1.06 * scene.radius
-    axes.set(
-        xlim=(-most, most), ylim=(-most, most), aspect="equal", title=title,
-        xlabel=f"h{names[a]} [N m s]", ylabel=f"h{names[b]} [N m s]",
-    )  # fmt: skip

@@ -26,7 +26,7 @@ def perspective(axes: Any, scene: Scene) -> None:
 
     signs = np.array([sheet.signs for sheet in scene.sheets])
     count = int(np.clip(_POINTS // len(signs), 200, _FINEST))
-    made = pieces(surfaces(scene.array, count, signs))
+    made = pieces((*surfaces(scene.array, count, signs), *scene.flats))
     view = _view()
     order = np.argsort((made.corner @ view[2]).mean(axis=1))
     areas = PolyCollection(made.corner[order] @ view[:2].T, facecolors=_colours(made, view)[order])

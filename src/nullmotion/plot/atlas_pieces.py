@@ -36,6 +36,22 @@ class Cut(NamedTuple):
     kind: np.ndarray
 
 
+def own_places(sheet: Surface) -> np.ndarray:
+    """Return for each point the point of the sheet whose type a picture gives it, (P,).
+
+    The rim of a hole belongs to two sheets, and its type is that of both together; a picture
+    takes the type of the nearest ring of the sheet itself, or the rim would be drawn in teeth.
+    """
+    place, rim = np.arange(len(sheet.u)), sheet.rim
+    columns = sheet.cells.shape[1]
+    for a in range(columns):
+        for b in range(columns):
+            inner, outer = sheet.cells[:, a], sheet.cells[:, b]
+            there = rim[inner] & ~rim[outer]
+            place[inner[there]] = outer[there]
+    return place
+
+
 def pieces(sheets: Iterable[Surface]) -> Pieces:
     """Return the triangles of sheets; where types part, triangles are cut along the edge.
 
@@ -68,15 +84,17 @@ def cut(made: Pieces, normal: np.ndarray, offset: float = 0.0) -> Cut:
 
 def _parts(sheet: Surface) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Return corners, directions at the corners and types: whole triangles, then cut ones."""
-    kind = sheet.kind[sheet.cells]
+    own = own_places(sheet)
+    kind = sheet.kind[own][sheet.cells]
     mixed = np.ptp(kind, axis=1) > 0
     whole, split = sheet.cells[~mixed], sheet.cells[mixed]
     parts = [(sheet.momentum[whole], sheet.u[whole], kind[~mixed, 0])]
-    return parts + _halves(sheet, split, kind[mixed]) if mixed.any() else parts
+    curvature = sheet.curvature[own]
+    return parts + _halves(sheet, curvature, split, kind[mixed]) if mixed.any() else parts
 
 
 def _halves(
-    sheet: Surface, cells: np.ndarray, kind: np.ndarray
+    sheet: Surface, curvature: np.ndarray, cells: np.ndarray, kind: np.ndarray
 ) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Return the parts of triangles with two types: one beside the odd corner, two beyond."""
     a, b, c = kind.T
@@ -84,7 +102,7 @@ def _halves(
     p, q, r = _from(cells, alone)
     own, other = kind[np.arange(len(kind)), alone], _from(kind, alone)[1]
     with np.errstate(divide="ignore"):
-        margin = 1.0 / sheet.curvature
+        margin = 1.0 / curvature
     table = np.concatenate([sheet.momentum, sheet.u], axis=1)
     pq, pr = (_edge(table, margin, p, there) for there in (q, r))
     made = []

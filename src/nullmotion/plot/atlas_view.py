@@ -7,13 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from nullmotion.array.model import CmgArray
 from nullmotion.atlas import Surface, patterns, surfaces
 from nullmotion.plot import palette
+from nullmotion.plot.atlas_flats import flats
+
+if TYPE_CHECKING:
+    from nullmotion.atlas.torque import TorqueMap
 
 MOST_POINTS = 40_000  # of all sheets together: a page turns them without a graphics card
 MOST_SHEETS = 128
@@ -77,6 +81,8 @@ class Scene:
         balls: Radii.
         motions: Runs.
         left_out: Sign patterns that are not among the sheets.
+        maps: Torque capability over planes.
+        flats: Flat pieces of the surfaces, where gimbal axes are shared.
     """
 
     array: CmgArray
@@ -85,6 +91,13 @@ class Scene:
     balls: tuple[Ball, ...] = ()
     motions: tuple[Motion, ...] = ()
     left_out: int = 0
+    maps: tuple[TorqueMap, ...] = ()
+    flats: tuple[Surface, ...] = ()
+
+    @property
+    def every(self) -> tuple[Surface, ...]:
+        """Sheets and flat pieces."""
+        return self.sheets + self.flats
 
     @property
     def middle(self) -> np.ndarray:
@@ -96,7 +109,7 @@ class Scene:
     @property
     def radius(self) -> float:
         """Size of the picture: the largest momentum on a sheet or of a motion [N m s]."""
-        found = [np.linalg.norm(sheet.momentum, axis=1).max() for sheet in self.sheets]
+        found = [np.linalg.norm(sheet.momentum, axis=1).max() for sheet in self.every]
         paths = [np.linalg.norm(motion.momentum, axis=1) for motion in self.motions]
         found += [np.nanmax(path) for path in paths if np.isfinite(path).any()]
         return float(max(found, default=1.0)) or 1.0
@@ -108,6 +121,7 @@ def scene(
     balls: Sequence[Ball] = (),
     motions: Sequence[Motion] = (),
     most: int = MOST_POINTS,
+    maps: Sequence[TorqueMap] = (),
 ) -> Scene:
     """Return an array's singular surfaces, meshed as finely as a picture can show.
 
@@ -117,6 +131,7 @@ def scene(
         balls: Radii to draw.
         motions: Runs to draw.
         most: Points of all sheets together.
+        maps: Torque capability over planes.
     """
     every = minority(patterns(array), np.asarray(array.h0) > 0)
     signs = every[:MOST_SHEETS]
@@ -124,7 +139,10 @@ def scene(
     count = PLANAR_DIRECTIONS if array.m < 3 else count
     start = np.zeros(array.n) if home is None else np.asarray(home, float)
     sheets = surfaces(array, count, signs)
-    return Scene(array, start, sheets, tuple(balls), tuple(motions), len(every) - len(signs))
+    return Scene(
+        array, start, sheets, tuple(balls), tuple(motions), len(every) - len(signs), tuple(maps),
+        flats(array),
+    )  # fmt: skip
 
 
 def minority(signs: np.ndarray, working: np.ndarray) -> np.ndarray:
@@ -141,5 +159,10 @@ def minority(signs: np.ndarray, working: np.ndarray) -> np.ndarray:
 
 
 def sign_name(signs: np.ndarray) -> str:
-    """Return a sign pattern as text, a place for each CMG."""
-    return "".join("+" if sign > 0 else "−" for sign in signs)
+    """Return a sign pattern as text, a place for each CMG; a ring for one at any angle."""
+    return "".join("○+−"[int(sign)] for sign in signs)
+
+
+def minus(signs: np.ndarray) -> int:
+    """Return how many minus signs a pattern has, or plus signs if they are fewer."""
+    return int(min(np.sum(signs < 0), np.sum(signs > 0)))

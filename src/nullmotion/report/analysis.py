@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +18,8 @@ from nullmotion.report.wording import number
 
 def shown(found: Analysis, home: Any, run: Run | None = None) -> Scene | None:
     """Return what page and figure show of an analysis; None where nothing can be drawn."""
-    made = atlas_page.analysis_scene(found.array, home, balls(found), run)
-    return None if made is None else replace(made, maps=found.maps)
+    flown = None if run is None or run.wheel_speed is not None else run  # its surfaces change
+    return atlas_page.analysis_scene(found.array, home, balls(found), flown, maps=found.maps)
 
 
 def analysis_page(
@@ -59,7 +58,7 @@ def headline(found: Analysis, title: str) -> Markup:
     """Return the first lines: what the array can rely on."""
     ball, nearest = found.radii.omnidirectional, found.radii.nearest_impassable
     unit = float(found.array.mean_momentum)
-    words = f"{OMNI} {number(ball.lower)} N m s, {number(ball.lower / unit)} of one CMG"
+    words = f"{OMNI} {number(ball.lower)} N m s, {number(ball.lower / unit)} h0"
     if ball.upper == 0:
         words = "No momentum in every direction"
     sentences = [

@@ -1,8 +1,7 @@
-"""The data block of a page's atlas: numbers as base64 in one table."""
+"""The data block of a page's atlas."""
 
 from __future__ import annotations
 
-import base64
 from dataclasses import asdict
 from typing import Any
 
@@ -10,33 +9,17 @@ import numpy as np
 
 from nullmotion.plot import palette
 from nullmotion.plot.atlas_looks import LOOKS, Look
-from nullmotion.plot.atlas_view import FEW_SHEETS, Ball, Motion, Scene, sign_name
+from nullmotion.plot.atlas_pieces import own_places
+from nullmotion.plot.atlas_torque import SCALE, span, torque_left
+from nullmotion.plot.atlas_view import FEW_SHEETS, Ball, Motion, Scene, minus, sign_name
 from nullmotion.plot.quantities import basis_names
+from nullmotion.report.atlas_coded import Coded, angles
+from nullmotion.report.atlas_map_data import map_data
 
 _FULL = 32767  # of a 16-bit number
 _MARGIN = 127
 MOST_BYTES = 450_000  # of all motions, before base64
 MOST_SAMPLES, LEAST_SAMPLES = 2000, 100  # of one motion
-
-
-class Coded:
-    """Collects arrays; equal ones are kept once."""
-
-    def __init__(self) -> None:
-        """Start without any."""
-        self.texts: list[str] = []
-        self._known: dict[bytes, int] = {}
-
-    def add(self, values: np.ndarray) -> int:
-        """Return the place of an array in the table."""
-        plain = np.ascontiguousarray(values)
-        raw = plain.dtype.str.encode() + plain.tobytes()
-        if raw not in self._known:
-            self._known[raw] = len(self.texts)
-            kind = plain.dtype.newbyteorder("<").str[1:]
-            coded = base64.b64encode(plain.astype(f"<{kind}", copy=False).tobytes()).decode()
-            self.texts.append(f"{kind}:{coded}")
-        return self._known[raw]
 
 
 def block(scene: Scene, begin_at_end: bool = False) -> dict[str, Any]:
@@ -49,7 +32,7 @@ def block(scene: Scene, begin_at_end: bool = False) -> dict[str, Any]:
         begin_at_end: Whether a run is first shown as it ended.
     """
     coded = Coded()
-    largest = max(float(np.abs(_drawn(scene, s.momentum)).max()) for s in scene.sheets) or 1.0
+    largest = max(float(np.abs(_drawn(scene, s.momentum)).max()) for s in scene.every) or 1.0
     quantum = largest / _FULL
     return {
         "array": _array(scene),
@@ -58,11 +41,13 @@ def block(scene: Scene, begin_at_end: bool = False) -> dict[str, Any]:
         "quantum": quantum,
         "kinds": [_look(scene, look) for look in LOOKS],
         "colours": list(palette.COLOURS),
-        "meshes": [_mesh(scene, coded)],
-        "sheets": [_sheet(scene, index, quantum, coded) for index in range(len(scene.sheets))],
+        "scale": list(SCALE),
+        "meshes": _meshes(scene, coded),
+        "sheets": [_sheet(scene, index, quantum, coded) for index in range(len(scene.every))],
         "spheres": [_ball(scene, k, ball) for k, ball in enumerate(scene.balls)],
         "motions": [_motion(scene, motion, coded) for motion in scene.motions],
         "begin_at_end": begin_at_end,
+        "maps": map_data(scene, coded),
         "arrays": coded.texts,
     }
 
@@ -75,10 +60,10 @@ def _look(scene: Scene, look: Look) -> dict[str, Any]:
 
 
 def _ball(scene: Scene, place: int, ball: Ball) -> dict[str, Any]:
-    """Return a radius about the array's bias; names are set apart along the outlines."""
+    """Return a radius about the array's bias; names stand all around."""
     centre = np.zeros(3)
     centre[: scene.array.m] = _drawn(scene, scene.middle)
-    return asdict(ball) | {"angle": 150 + 20 * place, "centre": centre.tolist()}
+    return asdict(ball) | {"angle": 150 + 55 * place, "centre": centre.tolist()}
 
 
 def _drawn(scene: Scene, vectors: np.ndarray) -> np.ndarray:
@@ -105,28 +90,39 @@ def _array(scene: Scene) -> dict[str, Any]:
     }
 
 
-def _mesh(scene: Scene, coded: Coded) -> dict[str, int]:
-    first = scene.sheets[0]
-    small = np.uint16 if len(first.u) < 65536 else np.uint32
-    u = np.rint(_drawn(scene, first.u) * _FULL).astype(np.int16)
-    return {"u": coded.add(u), "triangles": coded.add(first.cells.astype(small))}
+def _meshes(scene: Scene, coded: Coded) -> list[dict[str, int]]:
+    """Return directions and triangles: those of all sheets, then of each flat piece."""
+    different = (scene.sheets[0], *scene.flats)
+    left = torque_left(scene)
+    low, high = span(left) if left else (0.0, 1.0)
+    made = []
+    for place, one in enumerate(different):
+        small = np.uint16 if len(one.u) < 65536 else np.uint32
+        u = np.rint(_drawn(scene, one.u) * _FULL).astype(np.int16)
+        mesh = {"u": coded.add(u), "triangles": coded.add(one.cells.astype(small))}
+        if left:
+            steps = np.rint(255 * (left[place] - low) / (high - low))
+            mesh["left"] = coded.add(steps.astype(np.uint8))
+        made.append(mesh)
+    return made
 
 
 def _sheet(scene: Scene, index: int, quantum: float, coded: Coded) -> dict[str, Any]:
-    sheet = scene.sheets[index]
-    minus = int(np.sum(sheet.signs < 0))
+    sheet, flat = scene.every[index], index - len(scene.sheets) + 1
+    own = own_places(sheet)
     h = np.rint(_drawn(scene, sheet.momentum) / quantum).astype(np.int16)
     made = {
         "signs": sheet.signs.astype(int).tolist(),
         "name": sign_name(sheet.signs),
-        "minus": minus,
-        "mesh": 0,
-        "shown": len(scene.sheets) <= FEW_SHEETS or minus <= 1,
+        "mesh": max(flat, 0),
+        "shown": len(scene.sheets) <= FEW_SHEETS or minus(sheet.signs) <= 1,
         "h": coded.add(h),
-        "kind": coded.add(sheet.kind.astype(np.uint8)),
+        "kind": coded.add(sheet.kind[own].astype(np.uint8)),
     }
-    if scene.array.m == 3:
-        made["margin"] = coded.add(_margin(sheet.curvature))
+    if flat > 0:
+        made["delta"] = coded.add(angles(sheet.delta))
+    elif scene.array.m == 3:
+        made["margin"] = coded.add(_margin(sheet.curvature[own]))
     return made
 
 

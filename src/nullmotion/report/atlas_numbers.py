@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from nullmotion.report import page
 from nullmotion.report.markup import Markup, join, tag
 from nullmotion.report.tables import table
 from nullmotion.report.wording import number
@@ -33,12 +34,18 @@ class Number(NamedTuple):
     scale: float
     note: str
 
-    def cells(self) -> tuple[str, str, str, str, str, str]:
-        """Return the cells of its row."""
+    def cells(self) -> tuple[object, ...]:
+        """Return the cells of its row; numbers keep all their digits for whoever copies them."""
         middle = None if self.lower is None or self.upper is None else self.lower + self.upper
-        share = "–" if middle is None else number(0.5 * middle / self.scale, 4)
-        low, high = number(self.lower, _DIGITS), number(self.upper, _DIGITS)
-        return self.name, low, high, self.unit, share, self.note
+        share = None if middle is None else 0.5 * middle / self.scale
+        low, high = _exact(self.lower, _DIGITS), _exact(self.upper, _DIGITS)
+        return self.name, low, high, self.unit, _exact(share, 4), self.note
+
+
+def _exact(value: float | None, digits: int) -> Markup:
+    return tag(
+        "span", number(value, digits), data_value="" if value is None else repr(float(value))
+    )
 
 
 def number_table(rows: Sequence[Number], caption: str) -> Markup:
@@ -47,4 +54,9 @@ def number_table(rows: Sequence[Number], caption: str) -> Markup:
     button = tag("button", "Copy table", type="button", data_copy=TABLE)
     bar = tag("div", button, tag("span", "", id=said, role="status", class_="note"), class_="copy")
     made = table(_HEAD, [row.cells() for row in rows], caption, numeric=(1, 2, 4), wide=True)
-    return join(tag("div", made, id=TABLE), bar)
+    return join(tag("div", made, id=TABLE, class_="numbers"), bar)
+
+
+def extras() -> tuple[str, str]:
+    """Return style sheet and script of tables that can be copied, for `page.document`."""
+    return page.asset("numbers.css"), f'<script>"use strict";\n{page.asset("copy.js")}</script>'

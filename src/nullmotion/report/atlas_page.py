@@ -11,11 +11,11 @@ from nullmotion.plot.atlas_runs import drawable, motion
 from nullmotion.plot.atlas_view import Ball, Scene, scene
 from nullmotion.plot.panels import run_panels
 from nullmotion.plot.view import Run
-from nullmotion.report import page
+from nullmotion.report import atlas_numbers, page
 from nullmotion.report.atlas import Atlas
 from nullmotion.report.atlas_numbers import Number, number_table
 from nullmotion.report.charts import Charts, grid
-from nullmotion.report.markup import Markup, tag
+from nullmotion.report.markup import Markup, join, tag
 from nullmotion.report.run import thinning
 from nullmotion.report.wording import number
 
@@ -41,31 +41,57 @@ def atlas_page(
     rows: Sequence[Number],
     run: Run | None = None,
     text: str = "",
+    more: Sequence[Markup] = (),
 ) -> Path:
     """Write the analysis of an array as an HTML page that needs no network.
 
     Args:
         path: File to write.
         title: Title of the page.
-        shown: Surfaces and radii; None where there is nothing to draw.
+        shown: Surfaces, radii and maps; None where there is nothing to draw.
         headline: First lines.
         rows: Numbers of the table.
         run: A run whose history is shown beside.
         text: The file as written, shown on demand.
+        more: What comes after the numbers.
 
     Returns:
         The path.
     """
     atlas, charts = Atlas(shown), Charts()
-    parts = [headline, atlas.section() if shown is not None else tag("p", _FLAT, class_="note")]
-    parts.append(page.section("Numbers", number_table(rows, title), id="numbers"))
-    if run is not None:
-        parts.append(_history(charts, run))
-    if text:
-        shown_text = tag("pre", tag("code", text), tabindex="0", aria_label="Array file")
-        parts.append(page.section("Array", page.details("File", shown_text), id="file"))
+    parts = [
+        atlas.section() if shown is not None else tag("p", _FLAT, class_="note"),
+        atlas.maps(),
+        page.section("Numbers", number_table(rows, title), id="numbers"),
+        *more,
+        _history(charts, run) if run is not None else Markup(""),
+        _file(text),
+    ]
+    head = join(headline, _links(atlas, run is not None, bool(text)))
     made = page.versions(*([run] if run is not None else []))
-    return page.write(path, page.document(title, parts, charts, made, *atlas.extras()))
+    pairs = zip(atlas.extras(), atlas_numbers.extras(), strict=True)
+    style, script = ("".join(pair) for pair in pairs)
+    return page.write(path, page.document(title, [head, *parts], charts, made, style, script))
+
+
+def _links(atlas: Atlas, flown: bool, text: bool) -> Markup:
+    """Return the way to each section."""
+    there = (
+        ("atlas", "Pictures", atlas.scene is not None),
+        ("torque", "Torque capability", atlas.has_maps),
+        ("numbers", "Numbers", True),
+        ("history", "Over time", flown),
+        ("file", "Array file", text),
+    )
+    links = [tag("a", name, href=f"#{key}") for key, name, shown in there if shown]
+    return tag("nav", join(*links), class_="links", aria_label="Sections")
+
+
+def _file(text: str) -> Markup:
+    if not text:
+        return Markup("")
+    shown = tag("pre", tag("code", text), tabindex="0", aria_label="Array file")
+    return page.section("Array", page.details("File", shown), id="file")
 
 
 def subject(array: CmgArray) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from nullmotion.atlas.analysis import Analysis
-from nullmotion.atlas.radii import Radii
+from nullmotion.atlas.sizes import Radii
 from nullmotion.plot import palette
 from nullmotion.plot.atlas_view import Ball
 from nullmotion.report.atlas_numbers import Number
@@ -50,8 +50,8 @@ def radius_rows(radii: Radii, unit: float) -> list[Number]:
         none = "No internal singularity is impassable"
         rows.append(Number(IMPASSABLE, None, None, _UNIT, unit, none))
     else:
-        size = nearest.radius
-        rows.append(Number(IMPASSABLE, size, size, _UNIT, unit, _NOTES[IMPASSABLE]))
+        note = f"{_NOTES[IMPASSABLE]} ({nearest.basis.partition(',')[0]})"
+        rows.append(Number(IMPASSABLE, nearest.lower, nearest.radius, _UNIT, unit, note))
     for row in radii.guaranteed:
         level = f"{row.torque_capability:g} h0 x rate limit"
         finite = row.torque_Nm < float("inf")

@@ -39,15 +39,15 @@ def document(
         script: Further data and script elements; they run before the charts are drawn.
     """
     drawn = bool(charts.figures)
-    return Template(_asset("page.html")).substitute(
+    return Template(asset("page.html")).substitute(
         title=text(title),
-        style=_asset("page.css") + style,
+        style=asset("page.css") + style,
         body=join(*parts),
         footer=footer,
         more=script,
         data=charts.script() if drawn else "",
         plotly=f"<script>{_plotly()}</script>" if drawn else "",
-        script=f"<script>{_asset('charts.js')}</script>" if drawn else "",
+        script=f"<script>{asset('charts.js')}</script>" if drawn else "",
     )
 
 
@@ -110,7 +110,8 @@ def versions(*runs: Any) -> Markup:
 
 
 @cache
-def _asset(name: str) -> str:
+def asset(name: str) -> str:
+    """Return the text of a file of `report/assets`."""
     return files("nullmotion.report").joinpath("assets", name).read_text(encoding="utf-8")
 
 

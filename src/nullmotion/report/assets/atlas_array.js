@@ -20,7 +20,7 @@ function arrayView(data, state) {
   const inBody = (h) => (array.torque_axes.length === 3 ? h : array.torque_axes.reduce((v, axis, k) => sum(v, scaled(axis, h[k])), [0, 0, 0]));
 
   sheetOf(canvas, (context, width, height) => {
-    const where = projection(width, height, ring + 0.75, look.zoom.array);
+    const where = projection(width, height, ring + 0.95, look.zoom.array);
     const parts = [];
     for (let i = 0; i < n; i += 1) parts.push(...rotor(i, where));
     const h = scaled(inBody(state.momentum), (ring + 0.4) / total);

@@ -3,7 +3,7 @@
 // A triangle whose corners differ in type is cut where the quadratic form's margin passes
 // through zero (halfway where none is given), so that the types part along a smooth line.
 function mesh(data, array, wanted) {
-  const vertices = [], normals = [], triangles = [], kinds = [], owners = [];
+  const vertices = [], normals = [], levels = [], triangles = [], kinds = [], owners = [], firsts = [];
   let count = 0;
   data.sheets.forEach((sheet, owner) => {
     if (!wanted[owner]) return;
@@ -11,9 +11,12 @@ function mesh(data, array, wanted) {
     const h = array(sheet.h), kind = array(sheet.kind), corners = array(grid.triangles);
     const u = array(grid.u);
     const margin = sheet.margin === undefined ? null : array(sheet.margin);
+    const left = grid.left === undefined ? null : array(grid.left);
     const first = count;
+    firsts[owner] = first;
     for (let i = 0; i < h.length; i += 1) vertices.push(h[i] * data.quantum);
     for (let i = 0; i < u.length; i += 1) normals.push(u[i] / 32767);
+    for (let i = 0; 3 * i < h.length; i += 1) levels.push(left ? left[i] : 0);
     count += h.length / 3;
     const add = (a, b, c, k) => { triangles.push(a, b, c); kinds.push(k); owners.push(owner); };
     const between = (a, b) => {
@@ -23,6 +26,7 @@ function mesh(data, array, wanted) {
         vertices.push(vertices[p] + f * (vertices[q] - vertices[p]));
         normals.push(normals[p] + f * (normals[q] - normals[p]));
       }
+      levels.push(levels[first + a] + f * (levels[first + b] - levels[first + a]));
       count += 1;
       return count - 1;
     };
@@ -42,7 +46,8 @@ function mesh(data, array, wanted) {
     }
   });
   return finished({
-    place: Float32Array.from(vertices), normal: Float32Array.from(normals),
+    firsts,
+    place: Float32Array.from(vertices), normal: Float32Array.from(normals), level: Uint8Array.from(levels),
     corner: Uint32Array.from(triangles), kind: Uint8Array.from(kinds), owner: Uint16Array.from(owners),
   });
 }
@@ -99,28 +104,6 @@ function ordered(surface, list, towards, radius) {
   return sorted;
 }
 
-// Where a plane cuts the triangles that are switched on: pairs of points, and their types.
-function cut(surface, shown, plane) {
-  const { corner, place, kind } = surface;
-  const ends = [], kinds = [];
-  for (const t of chosen(surface, shown, null)) {
-    const side = [0, 1, 2].map((j) => {
-      const v = 3 * corner[3 * t + j];
-      return plane.normal[0] * place[v] + plane.normal[1] * place[v + 1] + plane.normal[2] * place[v + 2] - plane.offset;
-    });
-    if ((side[0] > 0) === (side[1] > 0) && (side[1] > 0) === (side[2] > 0)) continue;
-    for (let j = 0; j < 3; j += 1) {
-      const next = (j + 1) % 3;
-      if ((side[j] > 0) === (side[next] > 0)) continue;
-      const f = side[j] / (side[j] - side[next]);
-      const [p, q] = [3 * corner[3 * t + j], 3 * corner[3 * t + next]];
-      for (let i = 0; i < 3; i += 1) ends.push(place[p + i] + f * (place[q + i] - place[p + i]));
-    }
-    kinds.push(kind[t]);
-  }
-  return { ends, kinds };
-}
-
 // The nearest triangle under a pixel, and the unit direction u there.
 function picked(surface, list, view, x, y) {
   const { corner, place, normal } = surface;
@@ -138,7 +121,8 @@ function picked(surface, list, view, x, y) {
     const g = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area;
     if (f < 0 || g < 0 || f + g > 1) continue;
     const mixed = (table) => [0, 1, 2].map((j) => (1 - f - g) * table[3 * v[0] + j] + f * table[3 * v[1] + j] + g * table[3 * v[2] + j]);
-    found = { owner: surface.owner[t], kind: surface.kind[t], u: unit(mixed(normal)), h: mixed(place) };
+    const most = f >= g && f >= 1 - f - g ? 1 : g >= 1 - f - g ? 2 : 0; // the corner that is closest
+    found = { owner: surface.owner[t], kind: surface.kind[t], u: unit(mixed(normal)), vertex: v[most] - surface.firsts[surface.owner[t]] };
     nearest = depth;
   }
   return found;

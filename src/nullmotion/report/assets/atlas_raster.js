@@ -3,7 +3,7 @@ function rasteriser(canvas) {
   const context = canvas.getContext("2d");
   let image = null, pixels = null, width = 0, height = 0, detail = 1, took = 30;
   let xs = new Int32Array(0), ys = new Int32Array(0);
-  const tone = new Float64Array(3), side = new Float64Array(3);
+  const tone = new Float64Array(3), side = new Float64Array(3), level = new Float64Array(3);
 
   function prepare(view, sharp) {
     // Turning stays fluent on a slow machine; standing still is drawn with all detail.
@@ -35,8 +35,8 @@ function rasteriser(canvas) {
   // An edge that is no top or left one leaves its pixels to the neighbour.
   const bias = (dx, dy) => (dy < 0 || (dy === 0 && dx > 0) ? 0 : -1);
 
-  // Colours are 0 to 255, alpha 0 to 256; `tone` and `side` hold what the corners have.
-  function fill(va, vb, vc, red, green, blue, alpha, striped, gapped) {
+  // Colours are 0 to 255, alpha 0 to 256; `tone`, `side` and `level` hold what the corners have.
+  function fill(va, vb, vc, red, green, blue, alpha, striped, gapped, ramp, shade) {
     const ax = xs[va], ay = ys[va];
     let bx = xs[vb], by = ys[vb], cx = xs[vc], cy = ys[vc], b = 1, c = 2;
     let area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
@@ -57,6 +57,10 @@ function rasteriser(canvas) {
       for (let i = left, at = j * width + left; i <= right; i += 1, at += 1) {
         if (eA >= 0 && eB >= 0 && eC >= 0 && !(gapped && eA * side[0] + eB * side[b] + eC * side[c] > 0)) {
           let r = red, g = green, u = blue, strength = alpha;
+          if (ramp) {
+            const k = 3 * (((eA * level[0] + eB * level[b] + eC * level[c]) / area) | 0);
+            r = shade * ramp[k]; g = shade * ramp[k + 1]; u = shade * ramp[k + 2];
+          }
           if (striped) {
             const f = (eA * tone[0] + eB * tone[b] + eC * tone[c]) / area;
             if (f - Math.floor(f) < 0.2) { r *= 0.6; g *= 0.6; u *= 0.6; strength = Math.min(256, alpha + 50); }
@@ -91,7 +95,7 @@ function rasteriser(canvas) {
       const begun = performance.now();
       prepare(view, sharp);
       project(surface, view);
-      const { corner, kind, flat, place } = surface, paints = style.kinds;
+      const { corner, kind, flat, place } = surface, { kinds: paints, ramp } = style;
       const [lx, ly, lz] = style.light(view), [tx, ty, tz] = view.towards, [sx, sy, sz] = style.stripeAxis;
       const [px, py, pz] = plane ? plane.normal : [0, 0, 0], offset = plane ? plane.offset : 0;
       for (let o = 0; o < order.length; o += 1) {
@@ -113,8 +117,9 @@ function rasteriser(canvas) {
           side[2] = px * place[3 * c] + py * place[3 * c + 1] + pz * place[3 * c + 2] - offset;
           gapped = side[0] > 0 || side[1] > 0 || side[2] > 0;
         }
+        if (ramp) { level[0] = surface.level[a]; level[1] = surface.level[b]; level[2] = surface.level[c]; }
         const { rgb } = paint;
-        fill(a, b, c, shade * rgb[0], shade * rgb[1], shade * rgb[2], alpha, paint.stripes, gapped);
+        fill(a, b, c, shade * rgb[0], shade * rgb[1], shade * rgb[2], alpha, paint.stripes, gapped, ramp, shade);
       }
       divide();
       context.putImageData(image, 0, 0);

@@ -6,10 +6,13 @@ function nice(most, steps = 4) {
   return [1, 2, 2.5, 5, 10].map((f) => f * power).find((s) => s >= rough * 0.999);
 }
 
-const style = (data) => {
+// How surfaces look: by type, or by the torque that is left, which thin colours would not tell.
+const style = (data, byTorque) => {
   const towards = unit([0.35, 0.55, 0.75]); // to the right, up, towards the eye
+  const anchors = data.scale.map(rgbOf);
   return {
-    kinds: data.kinds.map((k) => ({ rgb: [1, 3, 5].map((i) => parseInt(k.colour.slice(i, i + 2), 16)), alpha: k.alpha, rim: k.rim, stripes: k.stripes })),
+    anchors, ramp: byTorque ? ramp(anchors) : null,
+    kinds: data.kinds.map((k) => ({ rgb: rgbOf(k.colour), alpha: byTorque ? 0.25 + 0.75 * k.alpha : k.alpha, rim: k.rim, stripes: k.stripes })),
     stripeAxis: scaled([0.28, 0.36, 0.89], 15 / data.radius),
     light: (view) => sum(sum(scaled(view.right, towards[0]), scaled(view.up, towards[1])), scaled(view.towards, towards[2])),
   };
@@ -18,7 +21,8 @@ const style = (data) => {
 function spaceView(data, array, state) {
   const figure = document.getElementById("atlas-space");
   const [behind, canvas, front] = figure.querySelectorAll("canvas");
-  const paints = style(data), radius = 1.12 * data.radius;
+  const looks = { type: style(data, false), left: style(data, true) }, radius = 1.12 * data.radius;
+  const paints = () => looks[state.colour];
   const renderer = webgl(canvas) ?? rasteriser(canvas);
   let built = [], surface = null, list = null, listed = "", settled = 0;
 
@@ -42,7 +46,7 @@ function spaceView(data, array, state) {
     const where = view();
     if (!where.width || !where.height) return;
     current();
-    renderer.draw(surface, ordered(surface, list, where.towards, radius), where, paints, state.plane, !moving);
+    renderer.draw(surface, ordered(surface, list, where.towards, radius), where, paints(), state.plane, !moving);
     if (moving && renderer.name === "raster") {
       clearTimeout(settled);
       settled = setTimeout(() => { moving = false; repaint(surfaces); }, 140);
@@ -79,10 +83,12 @@ function spaceView(data, array, state) {
       const last = Math.floor(end / step) * step;
       words(context, tidy(last), ...where.to(scaled(axis, last / end)).map((v, j) => v + (j ? 11 : 0)), { colour: "#5b6570", size: 10.5 });
     });
-    for (const ball of data.spheres.filter((s) => state.spheres[s.key])) drawBall(context, where, ball);
+    const balls = data.spheres.filter((s) => state.spheres[s.key]);
+    balls.forEach((ball) => drawBall(context, where, ball));
     if (state.plane) drawPlane(context, where);
     for (const motion of data.motions) drawPath(context, where, motion, motion === state.motion);
     drawMomentum(context, where);
+    balls.forEach((ball) => nameBall(context, where, ball));
     if (state.marked) {
       const [x, y] = where.to(state.marked);
       context.beginPath();
@@ -102,35 +108,29 @@ function spaceView(data, array, state) {
       context.stroke();
       context.setLineDash([]);
     }
-    const angle = ball.angle * RADIAN;
+  }
+
+  function nameBall(context, where, ball) {
+    const r = where.outline(ball.radius, ball.centre), at = where.to(ball.centre), angle = ball.angle * RADIAN;
     words(context, tidy(ball.radius, 4), at[0] + r * Math.cos(angle), at[1] - r * Math.sin(angle), { colour: ball.colour, size: 11.5, weight: 600 });
   }
 
-  let sections = { key: "", found: null };
-  function section() {
-    const key = JSON.stringify([state.kinds, state.sheets, state.plane]);
-    if (sections.key !== key) {
+  // Where a plane cuts what is switched on; kept for each that asks.
+  const sections = new Map();
+  function section(plane = state.plane, asker = "slice") {
+    const key = JSON.stringify([state.kinds, state.sheets, plane]);
+    if (sections.get(asker)?.key !== key) {
       current();
-      sections = { key, found: cut(surface, state, state.plane) };
+      sections.set(asker, { key, found: cut(surface, state, plane) });
     }
-    return sections.found;
+    return sections.get(asker).found;
   }
 
   function drawPlane(context, where) {
     const { normal, offset, across, upward } = state.plane, r = 1.04 * data.radius, foot = scaled(normal, offset);
     const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]].map(([a, b]) => where.to(sum(foot, sum(scaled(across, a * r), scaled(upward, b * r)))));
     line(context, corners, "#5b6570", 1, [4, 3]);
-    const { ends, kinds } = section();
-    data.kinds.forEach((kind, k) => {
-      context.beginPath();
-      kinds.forEach((it, i) => {
-        if (it !== k) return;
-        context.moveTo(...where.to(ends.slice(6 * i, 6 * i + 3)));
-        context.lineTo(...where.to(ends.slice(6 * i + 3, 6 * i + 6)));
-      });
-      Object.assign(context, { strokeStyle: kind.colour, lineWidth: 1.8, lineCap: "round" });
-      context.stroke();
-    });
+    strokes(context, section(), where.to, data.kinds, { ...byTorque(paints().ramp), width: () => 1.8 });
   }
 
   function drawPath(context, where, motion, current) {
@@ -147,16 +147,14 @@ function spaceView(data, array, state) {
     const to = where.to(state.momentum), from = where.to([0, 0, 0]);
     line(context, [from, to], "rgba(255,255,255,.8)", 5);
     arrow(context, from, to, "#1b1f24", 2.2);
-    context.beginPath();
-    context.arc(to[0], to[1], 5, 0, 2 * Math.PI);
-    Object.assign(context, { fillStyle: "#fff", strokeStyle: "#1b1f24", lineWidth: 2.4 });
-    context.fill();
-    context.stroke();
+    dotAt(context, to);
   }
 
   return {
-    section,
-    moved() { moving = true; repaint(); },
+    section, paints,
+    // Turned, cut or coloured in another way: coarse first.
+    moved() { moving = true; repaint(...[...painters].filter((p) => !p.flat)); },
+    changed() { moving = true; repaint(); },
     pick(x, y) {
       current();
       return picked(surface, list, view(), x, y);

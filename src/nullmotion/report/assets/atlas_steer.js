@@ -1,4 +1,4 @@
-// ---- turning and zooming: pointer, keys, buttons ----
+// Turning and zooming: pointer, keys, buttons.
 const steer = {
   left: () => look.turn(-0.12, 0),
   right: () => look.turn(0.12, 0),
@@ -9,7 +9,7 @@ const steer = {
   reset: () => look.reset(),
 };
 const KEYS = { ArrowLeft: "left", ArrowRight: "right", ArrowUp: "up", ArrowDown: "down", "+": "closer", "=": "closer", "-": "farther", Home: "reset" };
-const turned = () => (space ? space.moved() : repaint());
+const turned = () => (space ? space.moved() : repaint(...[...painters].filter((p) => !p.flat)));
 
 all("[data-steer]").forEach((button) => button.addEventListener("click", () => { steer[button.dataset.steer](planar ? "array" : "space"); turned(); }));
 all(".view3d").forEach((view) => {
@@ -49,7 +49,7 @@ all(".view3d").forEach((view) => {
     if (!clicked || !space || view.id !== "atlas-space") return;
     const box = view.getBoundingClientRect();
     const hit = space.pick(event.clientX - box.left, event.clientY - box.top);
-    if (hit) point(hit.u, hit.owner);
+    if (hit) meet(hit);
   };
   view.addEventListener("pointerup", lifted);
   view.addEventListener("pointercancel", lifted);
@@ -60,26 +60,3 @@ all(".view3d").forEach((view) => {
     turned();
   }, { passive: false });
 });
-
-// ---- the table of numbers, to take away ----
-document.querySelectorAll("[data-copy]").forEach((button) => button.addEventListener("click", async () => {
-  const rows = [...document.querySelectorAll(`#${button.dataset.copy} tr`)];
-  const text = rows.map((row) => [...row.cells].map((cell) => cell.innerText.trim().replace(/\s+/g, " ")).join("\t")).join("\n");
-  const said = document.getElementById(`${button.dataset.copy}-copied`);
-  try {
-    await navigator.clipboard.writeText(text);
-  } catch {
-    const area = Object.assign(document.createElement("textarea"), { value: text });
-    document.body.append(area);
-    area.select();
-    document.execCommand("copy");
-    area.remove();
-    button.focus();
-  }
-  said.textContent = "Copied.";
-  setTimeout(() => { said.textContent = ""; }, 2500);
-}));
-
-if (state.motion) goTo(whole()[data.begin_at_end ? 1 : 0], false);
-else show();
-repaint();

@@ -1,17 +1,18 @@
 // Draws ordered triangles with the graphics card; null where there is none worth the name.
+const ANCHORS = 17; // colours of a scale
 const VERTEX_SHADER = `#version 300 es
-in vec3 place; in vec3 normal; in float kind;
+in vec3 place; in vec3 normal; in float kind; in float level;
 uniform vec3 right, up, towards; uniform vec2 half_size; uniform float size, far;
-out vec3 at; out vec3 n; flat out int what;
+out vec3 at; out vec3 n; out float left; flat out int what;
 void main() {
-  at = place; n = normal; what = int(kind + .5);
+  at = place; n = normal; left = level; what = int(kind + .5);
   float f = size * far / (far - dot(towards, place));
   gl_Position = vec4(f * dot(right, place) / half_size.x, f * dot(up, place) / half_size.y, 0., 1.);
 }`;
 const FRAGMENT_SHADER = `#version 300 es
 precision highp float;
-in vec3 at; in vec3 n; flat in int what;
-uniform vec3 towards, light, stripe_axis; uniform vec4 plane; uniform vec4 look[8]; uniform vec2 edge[8];
+in vec3 at; in vec3 n; in float left; flat in int what;
+uniform vec3 towards, light, stripe_axis; uniform vec4 plane; uniform vec4 look[8]; uniform vec2 edge[8]; uniform bool ramped; uniform vec3 ramp[${ANCHORS}];
 out vec4 colour;
 void main() {
   if (dot(plane.xyz, at) > plane.w) discard;
@@ -19,7 +20,12 @@ void main() {
   float shade = .7 + .3 * turned * dot(m, light);
   vec4 paint = look[what]; vec2 extra = edge[what];
   float alpha = paint.a + (1. - paint.a) * extra.x * pow(1. - abs(dot(m, towards)), 3.);
-  vec3 rgb = paint.rgb * clamp(shade, 0., 1.);
+  vec3 rgb = paint.rgb;
+  if (ramped) {
+    float s = clamp(left, 0., 1.) * ${ANCHORS - 1}.; int k = min(int(s), ${ANCHORS - 2});
+    rgb = mix(ramp[k], ramp[k + 1], s - float(k));
+  }
+  rgb *= clamp(shade, 0., 1.);
   if (extra.y > 0.) {
     float s = dot(stripe_axis, at);
     float wide = max(fwidth(s), 1e-6);
@@ -63,7 +69,7 @@ function webgl(canvas) {
       gl.bufferData(gl.ARRAY_BUFFER, Float32Array.from(values), gl.STATIC_DRAW);
     };
   };
-  const put = { place: attribute("place", 3), normal: attribute("normal", 3), kind: attribute("kind", 1) };
+  const put = { place: attribute("place", 3), normal: attribute("normal", 3), kind: attribute("kind", 1), level: attribute("level", 1) };
   gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
   gl.enable(gl.BLEND);
   gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
@@ -72,8 +78,8 @@ function webgl(canvas) {
 
   // A triangle's type goes with its corners, so a corner of two types is there twice.
   function load(surface) {
-    const { corner, kind, place, normal, count } = surface;
-    const twin = new Map(), places = [], normals = [], kinds = [];
+    const { corner, kind, place, normal, level, count } = surface;
+    const twin = new Map(), places = [], normals = [], kinds = [], levels = [];
     [loaded, corners, indices] = [surface, new Uint32Array(corner.length), new Uint32Array(corner.length)];
     for (let i = 0; i < 3 * count; i += 1) {
       const t = Math.floor(i / 3), key = corner[i] * 8 + kind[t];
@@ -83,12 +89,14 @@ function webgl(canvas) {
         places.push(place[v], place[v + 1], place[v + 2]);
         normals.push(normal[v], normal[v + 1], normal[v + 2]);
         kinds.push(kind[t]);
+        levels.push(level[corner[i]] / 255);
       }
       corners[i] = twin.get(key);
     }
     put.place(places);
     put.normal(normals);
     put.kind(kinds);
+    put.level(levels);
   }
 
   return {
@@ -111,6 +119,8 @@ function webgl(canvas) {
       gl.uniform1f(set("far"), view.far);
       gl.uniform4fv(set("plane"), plane ? [...plane.normal, plane.offset] : [0, 0, 0, 1]);
       gl.uniform4fv(set("look"), style.kinds.flatMap((k) => [...k.rgb.map((c) => c / 255), k.alpha]));
+      gl.uniform1i(set("ramped"), style.ramp ? 1 : 0);
+      gl.uniform3fv(set("ramp"), style.anchors.flat().map((c) => c / 255));
       gl.uniform2fv(set("edge"), style.kinds.flatMap((k) => [k.rim, k.stripes ? 1 : 0]));
       gl.drawElements(gl.TRIANGLES, 3 * order.length, gl.UNSIGNED_INT, 0);
       return 0;

@@ -101,6 +101,8 @@ def radii(
     rows, reason = ((), held) if isinstance(held, str) else (held, "")
     ball = omnidirectional(array, progress=part[0])
     nearest = nearest_impassable(array, progress=part[1])
+    if progress is not None:
+        progress(1.0)  # what there was nothing to do for has told nothing
     return Radii(outer_surface(array), ball, nearest, rows, reason)
 
 
