@@ -19,7 +19,7 @@ def main() -> None:
     state = atlas.inspect(array, np.radians([-90.0, 0.0, 90.0, 0.0]))
     size = np.linalg.norm(state.momentum)
     leave = "can" if state.escapable else "cannot"
-    print(f"[-90, 0, 90, 0] deg: {state.kind} at |h| = {size:.4f} N m s; null motion {leave} leave it")
+    print(f"[-90, 0, 90, 0] deg: {state.kind}, |h| = {size:.4f} N m s; null motion {leave} leave")
     near = atlas.nearest_impassable(array)
     if near is not None:
         print(f"nearest impassable singularity: |h| = {near.radius:.4f} N m s")

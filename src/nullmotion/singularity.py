@@ -71,7 +71,7 @@ def measures(array: CmgArray, delta: Any) -> dict[str, Any]:
     distance = _search(array, angles.reshape(-1, array.n))[0].reshape(angles.shape[:-1])
     return {
         "sqrt_det_AAT": np.prod(sigma, axis=-1),
-        "sigma_min": sigma[..., -1],
+        "sigma_min": sigma[..., -1][()],
         "condition_number": sigma[..., 0] / np.maximum(sigma[..., -1], _LEAST_SIGMA),
         "distance_to_singularity": distance[()],
     }

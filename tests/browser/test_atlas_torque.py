@@ -111,7 +111,7 @@ def test_links_lead_to_every_section_by_keys(opened, whole_file):
     page = opened(whole_file)
     links = page.locator("nav.links a")
     there = [link.get_attribute("href") for link in links.all()]
-    assert there == ["#atlas", "#torque", "#numbers", "#history", "#file"]
+    assert there == ["#atlas", "#torque", "#numbers", "#state", "#history", "#file"]
     links.nth(2).focus()
     page.keyboard.press("Enter")
     page.wait_for_function("() => location.hash === '#numbers'")

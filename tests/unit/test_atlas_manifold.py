@@ -95,6 +95,7 @@ def check(array: nm.CmgArray, momentum: np.ndarray, dense: np.ndarray, gap: floa
     assert len(used) == len(found)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("array", "momentum"),
     [
@@ -138,6 +139,7 @@ def test_four_cmgs_against_dense_sampling(array: nm.CmgArray, momentum: list | N
     check(array, h, solutions(array, h, 12_000), 0.08)
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("momentum", [[0.3, 0.2, 0.1], [0.9, -0.4, 0.6]])
 def test_closed_curves_close_and_crossings_are_singular(momentum: list[float]) -> None:
     for piece in atlas.self_motion(PYRAMID, momentum):
@@ -150,6 +152,7 @@ def test_closed_curves_close_and_crossings_are_singular(momentum: list[float]) -
         assert stride.max() < 0.06 and piece.length == pytest.approx(stride.sum())
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     ("array", "momentum", "count"),
     [
@@ -184,6 +187,7 @@ def test_an_elliptic_state_is_alone() -> None:
     assert others[0].best["sigma_min"].value > 0.9  # the same momentum, out of reach
 
 
+@pytest.mark.slow
 def test_close_to_an_elliptic_state_null_motion_leads_nowhere() -> None:
     beside = ELLIPTIC + np.array([0.05, 0.0, 0.0, 0.03])
     assert nm.singularity.classify(PYRAMID, beside) == "regular"
@@ -193,6 +197,7 @@ def test_close_to_an_elliptic_state_null_motion_leads_nowhere() -> None:
     assert atlas.escapable(PYRAMID, np.zeros(4), least=0.3)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("array", "delta", "expected"),
     [
@@ -210,6 +215,7 @@ def test_escapes(array: nm.CmgArray, delta: list[float], expected: bool) -> None
     assert atlas.escapable(array, np.radians(delta)) == expected
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("array", "momentum", "count"),
     [
@@ -231,6 +237,7 @@ def test_sampled_pieces(array: nm.CmgArray, momentum: list[float], count: int) -
         )
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("h0", "size"),
     [

@@ -252,7 +252,7 @@ def test_a_page_has_all_parts_and_its_numbers_in_full(tmp_path, rng):
     ]
     assert order == sorted(order)
     links = re.findall(r'<a href="#(\w+)"', content)
-    assert links == ["atlas", "torque", "numbers", "file"]
+    assert links == ["atlas", "torque", "numbers", "state", "file"]
     assert 'data-value="2.5214159"' in content and "A &amp; B" in content
     assert "&lt;somewhere&gt;" in content and "[data-copy]" in content
 

@@ -19,9 +19,10 @@ import numpy as np
 from nullmotion.array.model import CmgArray
 from nullmotion.atlas import envelope_cells, envelope_support
 from nullmotion.atlas.bounds import Bounds
+from nullmotion.atlas.envelope_radius import BUDGET as CELLS
 from nullmotion.atlas.envelope_radius import Progress, Radius, least_unreachable
 from nullmotion.atlas.envelope_rings import Rings, rings
-from nullmotion.atlas.envelope_volume import measured
+from nullmotion.atlas.envelope_volume import BUDGET, convex, measured
 from nullmotion.atlas.signs import checked_directions
 from nullmotion.errors import InputError
 
@@ -29,9 +30,8 @@ __all__ = ["Bounds", "max_momentum", "omnidirectional", "reach", "volume"]
 
 TOLERANCE = 2e-4
 _PROVEN = "proven"
-_OPEN = "proven, not closed: more cells would be needed"
+_OPEN = "proven, not closed within {} cells"
 _FLAT = "proven: the reachable momenta have no volume"
-_CELLS = 400_000
 
 
 def max_momentum(array: CmgArray) -> Bounds:
@@ -51,7 +51,7 @@ def omnidirectional(
     array: CmgArray,
     tolerance: float = TOLERANCE,
     progress: Progress | None = None,
-    budget: int = _CELLS,
+    budget: int = CELLS,
 ) -> Bounds:
     """Return the radius of the largest ball around no momentum within R [N m s].
 
@@ -76,7 +76,7 @@ def omnidirectional(
         return _bounds(found, lower, upper, upper * u, _PROVEN, start)
     cells = envelope_cells.ball(found.m, upper, len(found.ring_of))
     radius = least_unreachable(found, cells, upper * u, _checked(tolerance), progress, budget)
-    return _from_radius(found, radius, start)
+    return _from_radius(found, radius, budget, start)
 
 
 def reach(
@@ -109,14 +109,14 @@ def reach(
     last = float(found.support(along)) * along
     cells = envelope_cells.ray(along, float(np.linalg.norm(last)), len(found.ring_of))
     radius = least_unreachable(found, cells, last, _checked(tolerance), progress)
-    return _from_radius(found, radius, start)
+    return _from_radius(found, radius, CELLS, start)
 
 
 def volume(
     array: CmgArray,
     tolerance: float = 0.05,
     progress: Progress | None = None,
-    budget: int = 60_000,
+    budget: int = BUDGET,
 ) -> Bounds:
     """Return the volume of R [(N m s)^m]: of the plane's area for m = 2, the length for m = 1.
 
@@ -133,14 +133,14 @@ def volume(
     found = rings(array)
     if found.flat:
         return _bounds(found, 0.0, 0.0, None, _FLAT, start)
-    _, radius, _ = envelope_support.greatest(found)
-    measure = measured(found, radius, _checked(tolerance), progress, budget)
+    closed = _checked(tolerance)
+    measure = convex(found) if found.convex else measured(found, closed, progress, budget)
     scale = found.unit**found.m
     return Bounds(
         measure.lower * scale,
         measure.upper * scale,
         estimate=measure.estimate * scale,
-        basis=_PROVEN,
+        basis=_PROVEN if measure.complete else _OPEN.format(budget),
         seconds=time.perf_counter() - start,
     )
 
@@ -151,8 +151,8 @@ def _checked(tolerance: float) -> float:
     return float(tolerance)
 
 
-def _from_radius(found: Rings, radius: Radius, start: float) -> Bounds:
-    basis = _PROVEN if radius.complete else _OPEN
+def _from_radius(found: Rings, radius: Radius, budget: int, start: float) -> Bounds:
+    basis = _PROVEN if radius.complete else _OPEN.format(budget)
     return _bounds(found, radius.lower, radius.upper, radius.at, basis, start)
 
 

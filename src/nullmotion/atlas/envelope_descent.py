@@ -64,7 +64,7 @@ def distances(rings: Rings, starts: Starts, h: np.ndarray) -> np.ndarray:
     _, gap = closest(rings, delta.reshape(-1, delta.shape[2]), np.repeat(h, count, axis=0))
     least: np.ndarray = np.linalg.norm(gap, axis=1).reshape(-1, count).min(axis=1)
     if envelope_three.applies(rings):
-        least[envelope_three.proven(rings, h[:, None])] = 0.0
+        least[envelope_three.judged(rings, h[:, None]).inside] = 0.0
     return least
 
 

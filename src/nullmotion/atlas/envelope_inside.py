@@ -104,8 +104,8 @@ def _from_columns(joined: Any, part: Any, column: Any, hull: Any) -> Any:
     Y = np.array([ops.amax(ops.absolute(hull @ U[:, k])) for k in axes]) * _SAFE + _TINY
     along, bend = column @ U, part @ U  # (c, m)
     V = along / sigma
-    bent = [[[(V[:, j] * V[:, l] * bend[:, k]).sum() for l in axes] for j in axes] for k in axes]
-    terms = [ops.absolute(x) for x in (V, np.array(bent), along, bend)]
+    bent = np.array([(V.T * bend[:, k]) @ V for k in axes])
+    terms = [ops.absolute(x) for x in (V, bent, along, bend)]
     good = ops.where(ops.less(_LEAST, found.s[-1]), _settles(Y, sigma, terms, joined), 0.0)
     return good, found.s[-1], (U / (sigma * sigma)).T
 

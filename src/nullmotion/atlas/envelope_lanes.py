@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
@@ -9,14 +10,22 @@ from typing import Any
 import numpy as np
 
 from nullmotion.compile import CompiledFunction, compile_function
+from nullmotion.compile.function import Bound
 
-_LANES = 1024
+_LANES = (64, 1024)
 Shape = tuple[int, ...]
+Source = Callable[..., Any]
 
 
 @lru_cache(maxsize=64)
-def _compiled(source: Callable[..., Any], shapes: tuple[Shape, ...]) -> CompiledFunction:
+def _compiled(source: Source, shapes: tuple[Shape, ...]) -> CompiledFunction:
     return compile_function(source, *[np.zeros(s) if s else 0.0 for s in shapes])
+
+
+@lru_cache(maxsize=128)
+def _bound(source: Source, shapes: tuple[Shape, ...], lanes: int, thread: int) -> Bound:
+    """Return the function on buffers of this thread's own."""
+    return _compiled(source, shapes).bound(lanes)
 
 
 class Lanes:
@@ -26,7 +35,7 @@ class Lanes:
     """
 
     def __init__(
-        self, source: Callable[..., Any], constants: tuple[np.ndarray, ...], shapes: tuple[Shape, ...]
+        self, source: Source, constants: tuple[np.ndarray, ...], shapes: tuple[Shape, ...]
     ) -> None:
         """Compile the source.
 
@@ -35,11 +44,8 @@ class Lanes:
             constants: What is the same in all lanes.
             shapes: Of the batches, without the batch axis.
         """
-        every = tuple(np.shape(c) for c in constants) + shapes
-        self._bound = _compiled(source, every).bound(_LANES)
-        for buffer, value in zip(self._bound.arguments, constants, strict=False):
-            buffer[...] = np.expand_dims(value, -1)
-        self._batches = self._bound.arguments[len(constants) :]
+        self._source, self._constants = source, constants
+        self._shapes = tuple(np.shape(c) for c in constants) + shapes
 
     def __call__(self, *batches: np.ndarray, rounds: int = 1, back: int = 0) -> Any:
         """Return the results with the batch axis first: an array or a tuple of them.
@@ -47,22 +53,27 @@ class Lanes:
         Args:
             *batches: Arrays with a leading batch axis.
             rounds: How often the function is applied.
-            back: With how many of its results, the first ones, the first batches are replaced
+            back: How many of its results, the first ones, take the place of the first batches
                 from one round to the next.
         """
         count = len(batches[0])
-        results = self._bound.result
-        several = isinstance(results, tuple)
-        rows = results if several else (results,)
+        lanes = _LANES[count > _LANES[0]]
+        bound = _bound(self._source, self._shapes, lanes, threading.get_ident())
+        several = isinstance(bound.result, tuple)
+        rows = bound.result if several else (bound.result,)
+        for buffer, value in zip(bound.arguments, self._constants, strict=False):
+            buffer[...] = value[..., None]
+        buffers = bound.arguments[len(self._constants) :]
         found = [np.empty((count, *r.shape[:-1])) for r in rows]
-        for first in range(0, count, _LANES):
-            part = slice(first, min(first + _LANES, count))
-            for buffer, batch in zip(self._batches, batches, strict=True):
-                buffer[..., : part.stop - first] = np.moveaxis(batch[part], 0, -1)
+        for first in range(0, count, lanes):
+            part = slice(first, min(first + lanes, count))
+            size = part.stop - first
+            for buffer, batch in zip(buffers, batches, strict=True):
+                buffer[..., :size] = np.moveaxis(batch[part], 0, -1)
             for k in range(rounds):
-                self._bound()
-                for r in range(back if k < rounds - 1 else 0):
-                    self._batches[r][...] = rows[r]
+                for r in range(back if k else 0):
+                    buffers[r][...] = rows[r]
+                bound()
             for value, row in zip(found, rows, strict=True):
-                value[part] = np.moveaxis(row[..., : part.stop - first], -1, 0)
+                value[part] = np.moveaxis(row[..., :size], -1, 0)
         return tuple(found) if several else found[0]

@@ -123,7 +123,9 @@ def _round(
     """Return u, point, z and the best separation after a round; source.
 
     Args:
-        frames: Of the rings, (k, 2, m); with outer and inner, (k,).
+        frames: Of the rings, (k, 2, m).
+        outer: Their radii, (k,).
+        inner: Those of their holes, (k,).
         u: Direction that is tried, (m,).
         point: Point of the hull, (m,).
         z: Points of the sectors' convex hulls, (k, 2).

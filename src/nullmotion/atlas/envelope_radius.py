@@ -22,34 +22,26 @@ Progress = Callable[[float], None]
 
 _BATCH = 4000  # cells looked at together
 _TRIED = 12  # centres at once that are tried to be unreachable
-_MARGIN = 0.1  # distance from R of momenta shown unreachable, over tolerance and radius
+_MARGINS = (0.1, 1.0)  # distance from R to look for, over tolerance and radius
+_HELD = 1e-9  # distance at which a momentum is reachable
 _FINEST = 0.25  # least edge of a cell around a reachable momentum, over radius and tolerance
 _FINER = 0.05  # of the others
-_BUDGET = 400_000  # cells
+BUDGET = 100_000  # cells
 
 
 class Radius(NamedTuple):
     """Bounds of the least |h| that is unreachable, in units of the mean momentum.
 
     Attributes:
-        lower: All momenta up to it are reachable, but for what may hide in ``points``.
+        lower: All momenta up to it are reachable.
         upper: A momentum of this size is not reachable, or R has no room beyond it.
         at: That momentum, (m,).
-        proven: All momenta up to it are reachable.
-        points: Number of cells below ``lower`` that are left out: their centres are reachable,
-            all around them is.
-        size: Their edges are shorter than this.
-        cells: Number of cells looked at.
         complete: Whether the bounds are as close as they were asked to be.
     """
 
     lower: float
     upper: float
     at: np.ndarray
-    proven: float
-    points: int
-    size: float
-    cells: int
     complete: bool
 
 
@@ -59,7 +51,7 @@ def least_unreachable(
     start: np.ndarray,
     tolerance: float,
     progress: Progress | None = None,
-    budget: int = _BUDGET,
+    budget: int = BUDGET,
 ) -> Radius:
     """Return bounds of the least size of an unreachable momentum in cells.
 
@@ -68,21 +60,21 @@ def least_unreachable(
         cells: Cells that cover what is asked about.
         start: A momentum beyond which there is none in its direction, (m,).
         tolerance: Share of the radius up to which the bounds are closed.
-        progress: Called with the share of the radius that is proven.
+        progress: Called with the share of the work that is done.
         budget: Number of cells after which the bounds are what they are.
     """
     origin = np.zeros(rings.m)
     if envelope_outside.proven(rings, origin[None, None])[0]:
-        return Radius(0.0, 0.0, origin, 0.0, 0, 0.0, 0, True)
+        return Radius(0.0, 0.0, origin, True)
     search = _Search(Explorer(rings), start, tolerance)
     while len(cells) and search.looked_at < budget:
-        cells = cells.take(cells.nearest < search.upper * (1 - tolerance))
+        cells = cells.take(cells.nearest < min(search.upper * (1 - tolerance), search.stuck))
         order = np.argsort(cells.nearest, kind="stable")
         first, rest = order[:_BATCH], order[_BATCH:]
         if len(first):
             cells = cells.take(rest).joined(search.step(cells.take(first)))
-        if progress is not None and len(cells):
-            progress(min(1.0, float(cells.nearest.min()) / search.upper))
+        if progress is not None:
+            progress(search.share(cells, budget))
     return search.result(cells)
 
 
@@ -92,48 +84,61 @@ class _Search:
     def __init__(self, explorer: Explorer, start: np.ndarray, tolerance: float) -> None:
         self.explorer, self.tolerance = explorer, tolerance
         self.at, self.upper = start, float(np.linalg.norm(start))
-        self.points: list[float] = []
-        self.stuck: list[float] = []
-        self.looked_at = 0
+        self.stuck = np.inf  # least |h| of cells that are too small to be cut
+        self.looked_at, self.done = 0, 0.0
 
     def step(self, cells: Cells) -> Cells:
         """Return what is left of cells, cut."""
         self.looked_at += len(cells)
         found = self.explorer.explore(cells)
         self._lower_the_upper(found)
-        open_cells, axis = found.cells.take(~found.inside), found.axis[~found.inside]
-        reached = found.reached[~found.inside]
+        left = ~found.inside
+        open_cells, axis = found.cells.seeded(found.seeds).take(left), found.axis[left]
+        reached = found.reached[left]
         finest = self.tolerance * self.upper * np.where(reached, _FINEST, _FINER)
         fine = open_cells.longest < finest
-        for which, left in ((fine & reached, self.points), (fine & ~reached, self.stuck)):
-            left.extend(open_cells.nearest[which].tolist())
+        self.stuck = min(self.stuck, float(open_cells.nearest[fine].min(initial=np.inf)))
         return open_cells.take(~fine).halves(axis[~fine])
 
-    def _lower_the_upper(self, found: Findings) -> None:
+    def _lower_the_upper(self, found: Findings[Cells]) -> None:
         rings, starts = self.explorer.rings, self.explorer.starts
-        centres = found.cells.centres()[~found.inside & ~found.reached]
+        centres = found.cells.centres()
         size = np.linalg.norm(centres, axis=1)
         order = np.argsort(size)
-        centres = centres[order[size[order] < self.upper * (1 - self.tolerance)][:_TRIED]]
-        margin = _MARGIN * self.tolerance * self.upper
-        if len(centres):
-            centres = centres[distances(rings, starts, centres) > margin]
-        if len(centres) == 0:
+        for i in order[found.outside[order]][:1]:
+            if size[i] < self.upper:
+                self.at, self.upper = centres[i], float(size[i])
+        tried = order[~(found.inside | found.reached)[order]]
+        centres = centres[tried[size[tried] < self.upper * (1 - self.tolerance)][:_TRIED]]
+        away = distances(rings, starts, centres) if len(centres) else np.zeros(0)
+        if len(centres) == 0 or away.max() <= _HELD:
             return
-        best = smallest_near(rings, starts, centres[0], margin)
-        for h in (best, centres[0]):
-            if envelope_outside.proven(rings, h[None, None])[0]:
-                self.at, self.upper = h, float(np.linalg.norm(h))
-                break
+        farthest, nearest = centres[away.argmax()], centres[np.flatnonzero(away > _HELD)[0]]
+        for margin in _MARGINS:
+            room = margin * self.tolerance * self.upper
+            if self._unreachable(smallest_near(rings, starts, farthest, room)):
+                return
+        if not self._unreachable(nearest):
+            self._unreachable(farthest)
+
+    def _unreachable(self, h: np.ndarray) -> bool:
+        """Lower the upper bound to |h| if it is less and h is unreachable for certain."""
+        size = float(np.linalg.norm(h))
+        good = size < self.upper * (1 - 0.5 * self.tolerance)
+        good = good and bool(envelope_outside.proven(self.explorer.rings, h[None, None])[0])
+        if good:
+            self.at, self.upper = h, size
+        return good
+
+    def share(self, cells: Cells, budget: int) -> float:
+        """Return the share of the work that is done: each factor of the gap is as much work."""
+        gap = 1 - float(cells.nearest.min(initial=self.upper)) / self.upper
+        closed = np.log(max(gap, self.tolerance)) / np.log(self.tolerance)
+        self.done = min(1.0, max(self.done, closed, self.looked_at / budget))
+        return self.done
 
     def result(self, cells: Cells) -> Radius:
         """Return the bounds, given the cells that are left."""
         wanted = self.upper * (1 - self.tolerance)
-        left = min([*cells.nearest.tolist(), *self.stuck], default=np.inf)
-        lower = min(wanted, left)
-        points = [r for r in self.points if r < lower]
-        size = _FINEST * self.tolerance * self.upper
-        proven = min([lower, *points])
-        return Radius(
-            lower, self.upper, self.at, proven, len(points), size, self.looked_at, left >= wanted
-        )
+        left = min(self.stuck, float(cells.nearest.min(initial=np.inf)))
+        return Radius(min(wanted, left), self.upper, self.at, left >= wanted)

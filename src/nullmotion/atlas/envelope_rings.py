@@ -67,7 +67,7 @@ class Rings:
 
     @cached_property
     def circles(self) -> np.ndarray:
-        """Circles that make the rings, (c, 2, m): h = sum_i cos(delta_i) c_i0 + sin(delta_i) c_i1."""
+        """Circles that make the rings, (c, 2, m): h = sum_i c_i0 cos delta_i + c_i1 sin delta_i."""
         first = np.append(True, np.diff(self.ring_of) > 0)
         sign = np.where(first, 1.0, -1.0)
         radii = 0.5 * (self.outer[self.ring_of] + sign * self.inner[self.ring_of])

@@ -13,7 +13,7 @@ from nullmotion.atlas.envelope_lanes import Lanes
 from nullmotion.atlas.envelope_rings import Rings
 
 _SAMPLES = 50_000
-_NEAR = 48  # samples around a momentum
+_NEAR = 24  # samples around a momentum
 _APART = 0.15  # sine of half the angle between two starts that are not the same
 _LEAST = 1e-9  # added to the eigenvalues of A A^T, in units of the mean momentum squared
 _STEP = 0.7  # largest step of a gimbal [rad]

@@ -12,17 +12,22 @@ so that for each pair of signs the defect  f(phi) = y . w - z_j - z_k  is contin
 roots exist; where one ends its two signs meet. If f changes sign between two angles on one
 such branch for every y of the hull, every momentum of the hull is reachable.
 
+Where f keeps a sign for every y, on every branch and all the way between the angles of the grid,
+none is.
+
 Everything is linear in h but the roots, which are monotonic in |x|: bounds over the hull's
-corners are bounds over the hull. Between two angles of the grid x leaves the line between its
-ends by less than |g . h_i| step^2 / 8.
+corners are bounds over the hull. Between two angles of the grid x and y . w leave the line
+between their ends by less than |g . h_i| step^2 / 8. Source without branches, compiled.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from nullmotion import ops
+from nullmotion.atlas.envelope_lanes import Lanes
 from nullmotion.atlas.envelope_rings import Rings
 
 _STEPS = 96  # angles of circle i
@@ -31,94 +36,164 @@ _TINY = 1e-11
 _ORDERS = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 
 
+class Verdict(NamedTuple):
+    """What is known about hulls.
+
+    Attributes:
+        inside: All momenta are reachable for certain, (B,).
+        outside: None is, (B,).
+    """
+
+    inside: np.ndarray
+    outside: np.ndarray
+
+
 def applies(rings: Rings) -> bool:
     """Return whether an array has three circles in three dimensions."""
     return rings.m == 3 and len(rings.ring_of) == 3
 
 
-def proven(rings: Rings, hulls: np.ndarray) -> np.ndarray:
-    """Return which hulls (B, p, 3) are reachable for certain, (B,)."""
+def judged(rings: Rings, hulls: np.ndarray) -> Verdict:
+    """Return what is known about hulls (B, p, 3)."""
     normal = np.cross(rings.circles[:, 0], rings.circles[:, 1])
     radius = np.linalg.norm(rings.circles[:, 0], axis=1)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    good = np.zeros(len(hulls), bool)
+    inside, outside = np.zeros(len(hulls), bool), np.zeros(len(hulls), bool)
     for i, j, k in _ORDERS:
-        left = np.flatnonzero(~good)
+        left = np.flatnonzero(~(inside | outside))
         across = np.cross(normal[j], normal[k])
         size = np.linalg.norm(across)
         if size < _OBLIQUE or len(left) == 0:
             continue
         axes = np.stack([across / size, normal[k] / size, normal[j] / size])
-        sweep = _sweep(rings.circles[i], axes, radius[[j, k]], hulls[left])
-        good[left] = sweep.proves() | sweep.backwards().proves()
-    return good
+        turning = rings.circles[i] @ axes.T  # (2, 3)
+        along = hulls[left] @ axes.T
+        for way in (1.0, -1.0):
+            changed, none = _turned(turning, radius[[j, k]], along, way)
+            inside[left] |= changed
+            outside[left] |= none
+    return Verdict(inside, outside)
 
 
-class _Sweep(NamedTuple):
-    """What is known over a hull on the grid of angles phi, the last axis.
+def _turned(
+    turning: np.ndarray, radius: np.ndarray, along: np.ndarray, way: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return where f changes sign on a branch while phi turns twice, and where it has no zero.
 
-    Attributes:
-        sign: 1 or -1 where f has this sign all over the hull, else 0; (2, 2, B, N) for the
-            signs + and - of z_j and of z_k.
-        most: Greatest |x| / r of j and k, (2, B, N).
-        least: Least |x| / r, (2, B, N).
-        sag: By how much |x| / r may exceed both ends of a step, (2, 1).
+    Args:
+        turning: Components of circle i along the axes of y . w, x_j, x_k, (2, 3).
+        radius: r_j and r_k, (2,).
+        along: The hulls' corners along these axes, (B, p, 3).
+        way: 1 or -1, the sense in which phi turns.
     """
-
-    sign: np.ndarray
-    most: np.ndarray
-    least: np.ndarray
-    sag: np.ndarray
-
-    def backwards(self) -> _Sweep:
-        """Return the same with phi running down."""
-        return _Sweep(*(v[..., ::-1] for v in self[:3]), self.sag)
-
-    def proves(self) -> np.ndarray:
-        """Return where f changes sign on a branch, (B,)."""
-        after = np.roll(self.most, -1, axis=-1)
-        goes_on = np.maximum(self.most, after) + self.sag[..., None] < 1.0 - _TINY
-        ended = np.roll(self.least, -1, axis=-1) > 1.0 + _TINY
-        meets = (self.most < 1.0 - _TINY).all(axis=0) & ended & goes_on[::-1]
-        linked = goes_on.all(axis=0)
-        last = np.zeros(self.sign.shape[:-1], np.int8)
-        found = np.zeros(last.shape[2], bool)
-        for a in np.tile(np.arange(_STEPS), 2):
-            here = self.sign[..., a]
-            found |= (last * here < 0).any(axis=(0, 1))
-            last = np.where(here != 0, here, last)
-            found |= meets[0, :, a] & (last[0] * last[1] < 0).any(axis=0)
-            found |= meets[1, :, a] & (last[:, 0] * last[:, 1] < 0).any(axis=0)
-            last = np.where(linked[:, a], last, np.int8(0))
-        return found
+    count = len(along)
+    step = way * 2 * np.pi / _STEPS
+    sag = np.hypot(*turning) * step**2 / 8
+    constants = turning, radius, sag, np.array([np.cos(step), np.sin(step)])
+    low, high = along.min(axis=1), along.max(axis=1)
+    phase = np.tile([1.0, 0.0], (count, 1))
+    state = [phase, low - turning[0], high - turning[0], np.zeros((count, 2, 2))]
+    state += [np.zeros(count), np.ones(count)]
+    lanes = Lanes(_step, constants, ((2,), (3,), (3,), (2, 2), (), (), (3,), (3,)))
+    found = lanes(*state, low, high, rounds=2 * _STEPS, back=6)
+    return found[4] > 0, found[5] > 0
 
 
-def _sweep(circle: np.ndarray, axes: np.ndarray, radius: np.ndarray, hulls: np.ndarray) -> _Sweep:
-    """Return signs and extents for circle i, the axes of y . w, x_j, x_k, and r_j, r_k."""
-    phi = 2 * np.pi * np.arange(_STEPS) / _STEPS
-    turning = circle @ axes.T  # (2, 3)
-    own = np.cos(phi)[:, None] * turning[0] + np.sin(phi)[:, None] * turning[1]  # (N, 3)
-    along = hulls @ axes.T
-    low = np.moveaxis(along.min(axis=1)[:, None] - own, -1, 0)  # (3, B, N)
-    high = np.moveaxis(along.max(axis=1)[:, None] - own, -1, 0)
-    r = radius[:, None, None]
-    most = np.maximum(-low[1:], high[1:]) / r
-    least = np.maximum(np.maximum(low[1:], -high[1:]), 0.0) / r
-    valid = (most < 1.0 - _TINY).all(axis=0)
-    root = r * np.sqrt(np.maximum(1.0 - np.stack([least, most]) ** 2, 0.0))  # most, least; j, k
-    amplitude = np.hypot(turning[0, 1:], turning[1, 1:])
-    sag = (amplitude / radius)[:, None] * (2 * np.pi / _STEPS) ** 2 / 8
-    return _Sweep(_signs(low[0], high[0], root, valid), most, least, sag)
+def _step(
+    turning: Any,
+    radius: Any,
+    sag: Any,
+    turn: Any,
+    phase: Any,
+    low: Any,
+    high: Any,
+    last: Any,
+    changed: Any,
+    none: Any,
+    least: Any,
+    greatest: Any,
+) -> Any:
+    """Return the state at the next angle of the grid; source.
+
+    Args:
+        turning: As above, with ``radius``.
+        radius: r_j and r_k.
+        sag: How far y . w, x_j, x_k leave the line between two angles, (3,).
+        turn: Cosine and sine of a step.
+        phase: Cosine and sine of phi.
+        low: Least y . w, x_j, x_k over the hull at phi, (3,).
+        high: Greatest ones.
+        last: Sign that f had on the branch (sign of z_j, of z_k), 0 if unknown, (2, 2).
+        changed: 1 if f has changed sign on a branch.
+        none: 1 if f has had no zero.
+        least: Least of these components over the hull, without circle i.
+        greatest: Greatest of them.
+    """
+    cosine, sine = phase
+    phase = np.stack([cosine * turn[0] - sine * turn[1], sine * turn[0] + cosine * turn[1]])
+    own = phase[0] * turning[0] + phase[1] * turning[1]
+    before, after = _extent(low, high, radius), _extent(least - own, greatest - own, radius)
+    between = _extent(
+        ops.minimum(low, least - own) - sag, ops.maximum(high, greatest - own) + sag, radius
+    )
+    none = ops.where(_zero_free(between, radius), none, 0.0)
+    for one, other in ((0, 1), (1, 0)):  # circle `one` ends, the other goes on
+        ends = ops.logical_and(before.valid, ops.less(radius[one] + _TINY, after.nearest[one]))
+        ends = ops.logical_and(ends, ops.less(between.farthest[other], radius[other] - _TINY))
+        pairs = last[0] * last[1] if one == 0 else last[:, 0] * last[:, 1]
+        differ = ops.less(ops.minimum(pairs[0], pairs[1]), 0.0)
+        changed = ops.where(ops.logical_and(ends, differ), 1.0, changed)
+    last = ops.where(between.valid, last, 0.0)
+    sign = _signs(after)
+    changed = ops.where(ops.less(ops.amin((last * sign).reshape(4)), 0.0), 1.0, changed)
+    last = ops.where(ops.equal(sign, 0.0), last, sign)
+    return phase, least - own, greatest - own, last, changed, none
 
 
-def _signs(low: np.ndarray, high: np.ndarray, root: np.ndarray, valid: np.ndarray) -> np.ndarray:
-    """Return the signs of f from the ends of y . w and of both roots, (2, 2, B, N)."""
-    great, small = root
-    ends = [(great, small), (-small, -great)]  # of z, greatest first, for + and -
-    sign = np.zeros((2, 2, *valid.shape), np.int8)
-    for p, (high_j, low_j) in enumerate((g[0], s[0]) for g, s in ends):
-        for q, (high_k, low_k) in enumerate((g[1], s[1]) for g, s in ends):
-            above = low - high_j - high_k > _TINY
-            below = high - low_j - low_k < -_TINY
-            sign[p, q] = valid * (above.astype(np.int8) - below.astype(np.int8))
-    return sign
+class _Extent(NamedTuple):
+    """What y . w, x and z may be over a hull: y . w in [low, high], |x| and |z| for j and k."""
+
+    low: Any
+    high: Any
+    nearest: Any
+    farthest: Any
+    smallest: Any
+    largest: Any
+    valid: Any
+
+
+def _extent(low: Any, high: Any, radius: Any) -> _Extent:
+    farthest = ops.maximum(-low[1:], high[1:])
+    nearest = ops.maximum(ops.maximum(low[1:], -high[1:]), 0.0)
+    smallest, largest = (
+        ops.sqrt(ops.maximum(radius * radius - x * x, 0.0)) for x in (farthest, nearest)
+    )
+    inside = ops.less(farthest, radius - _TINY)
+    valid = ops.logical_and(inside[0], inside[1])
+    return _Extent(low[0], high[0], nearest, farthest, smallest, largest, valid)
+
+
+def _signs(at: _Extent) -> Any:
+    """Return the sign of f on each branch, 0 where it is not the same all over, (2, 2)."""
+    rows = [[_sign(at, p, q) for q in (1, -1)] for p in (1, -1)]
+    return ops.where(at.valid, np.array(rows), 0.0)
+
+
+def _sign(at: _Extent, p: int, q: int) -> Any:
+    least, greatest = zip(_root(at, 0, p), _root(at, 1, q), strict=True)
+    above = ops.less(_TINY, at.low - greatest[0] - greatest[1])
+    below = ops.less(at.high - least[0] - least[1], -_TINY)
+    return ops.where(above, 1.0, ops.where(below, -1.0, 0.0))
+
+
+def _root(at: _Extent, circle: int, sign: int) -> tuple[Any, Any]:
+    small, large = at.smallest[circle], at.largest[circle]
+    return (small, large) if sign > 0 else (-large, -small)
+
+
+def _zero_free(at: _Extent, radius: Any) -> Any:
+    """Return whether f has no zero on any branch, or no branch is there."""
+    ended = ops.less(radius + _TINY, at.nearest)
+    signs = [ops.equal(_sign(at, p, q), 0.0) for p in (1, -1) for q in (1, -1)]
+    unknown = ops.logical_or(ops.logical_or(*signs[:2]), ops.logical_or(*signs[2:]))
+    return ops.logical_or(ops.logical_or(ended[0], ended[1]), ops.logical_not(unknown))

@@ -1,11 +1,13 @@
 """Which patches of singular directions have hyperbolic points only.
 
-In a frame that goes along, the column t_k of the axis with the least |p_k| and s = u x t_k,
+The columns t_i lie in the plane normal to u, at angles b_i from each other. With W_i the sum of
+epsilon h0 over the CMGs of gimbal axis i, and k the axis with the least |p_k|,
 
-    C = sum_i W_i / |p_i| [cos^2 b_i, cos b_i sin b_i; cos b_i sin b_i, sin^2 b_i]
+    C = sum_i K_i t_i t_i^T,    K_i = W_i / |p_i|
+    tr C = sum_i K_i,    det C = K_k S + sum_(i < j, not k) K_i K_j sin^2(b_i - b_j)
+    s^T C s = S = sum_i K_i sin^2(b_i - b_k),    s normal to t_k
 
-with t_i . t_k = cos b_i and t_i . s = sin b_i, W_i the sum of epsilon h0 over the CMGs of axis i.
-Over a patch b_i is known up to roll_i + roll_k, and C as an interval matrix. If it has at least p
+Over a patch |p_i| has bounds and b_i - b_j is known up to roll_i + roll_j. If C has at least p
 positive and q negative eigenvalues, Q on the null space has at least a + q - 2 positive and
 b + p - 2 negative ones (`kind`), a and b the numbers of signs + and -. With one of each it is
 not definite: no point is elliptic.
@@ -52,54 +54,58 @@ def cases_of(sphere: Sphere, h0: np.ndarray, signs: np.ndarray) -> Cases:
 
 def hyperbolic(view: View, cases: Cases) -> np.ndarray:
     """Return where no point of the patches can be elliptic, (B,)."""
-    plus, minus = _eigenvalues(*_form(view, cases.weights))
+    plus, minus = _eigenvalues(view, cases.weights)
     found: np.ndarray = (cases.above + minus > 2) & (cases.below + plus > 2)
     return found
 
 
-def _form(view: View, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return intervals (2, B) of C along t_k, along s, and between them."""
-    k = np.argmin(view.across, axis=1)[:, None]
-    t = np.take_along_axis(view.column, k[..., None], axis=1)[:, 0]
-    cosine = np.einsum("bnk,bk->bn", view.column, t)
-    sine = np.einsum("bnk,bk->bn", view.column, np.cross(view.u, t))
-    off = np.minimum(view.roll + np.take_along_axis(view.roll, k, axis=1), 1.0)
-    off = np.where(np.arange(weights.shape[1]) == k, 0.0, off)  # the frame goes along with it
-    cosine, sine = np.where(off > 0, cosine, 1.0), np.where(off > 0, sine, 0.0)
-    size = np.abs(weights)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        scale = np.nan_to_num(np.stack([size / view.most, size / view.least]), posinf=np.inf)
-    return (
-        _sum(weights, scale, cosine**2, off, 0.0),
-        _sum(weights, scale, sine**2, off, 0.0),
-        _sum(weights, scale, cosine * sine, off, -1.0),
-    )
-
-
-def _sum(
-    weights: np.ndarray, scale: np.ndarray, middle: np.ndarray, off: np.ndarray, least: float
-) -> np.ndarray:
-    """Return the interval (2, B) of sum_i sign(W_i) scale_i x_i, x_i within off of the middle."""
-    x = np.clip(np.stack([middle - off, middle + off]), least, 1.0)
-    with np.errstate(invalid="ignore"):  # nothing of what has no bound is nothing
-        low = np.where(x[0] == 0, 0.0, np.where(x[0] < 0, scale[1], scale[0]) * x[0])
-        high = np.where(x[1] == 0, 0.0, np.where(x[1] > 0, scale[1], scale[0]) * x[1])
-    positive = weights > 0
-    return np.stack([
-        np.where(positive, low, -high).sum(axis=1), np.where(positive, high, -low).sum(axis=1)
-    ])  # fmt: skip
-
-
-def _eigenvalues(
-    first: np.ndarray, second: np.ndarray, between: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return how many eigenvalues are positive, and negative, at least: 2 x 2 intervals."""
-    with np.errstate(invalid="ignore"):
-        product = np.stack([a * b for a in first for b in second])
-        square = between**2
-        least = np.where((between[0] < 0) & (between[1] > 0), 0.0, square.min(axis=0))
-        lowest, highest = product.min(axis=0) - square.max(axis=0), product.max(axis=0) - least
-        up, down = (first[0] > 0) | (second[0] > 0), (first[1] < 0) | (second[1] < 0)
-        definite, saddle = lowest > 0, highest < 0
+def _eigenvalues(view: View, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return how many eigenvalues of C are positive, and negative, at least, (B,)."""
+    nearest = np.argmin(view.across, axis=1)[:, None]
+    last = np.arange(weights.shape[1]) == nearest
+    order = np.argsort(last, axis=1, kind="stable")  # the axis k comes last
+    K, angle, roll = _terms(view, weights, nearest)
+    K = np.take_along_axis(K, order[None], axis=2)
+    angle, roll = (np.take_along_axis(v, order, axis=1) for v in (angle, roll))
+    along = K.sum(axis=-1)
+    sine = _squared_sine(angle[:, -1:] - angle, roll[:, -1:] + roll)
+    across = _product(K, sine)[..., :-1].sum(axis=-1)
+    along_k = _product(K, 1.0 - sine[::-1])[..., :-1].sum(axis=-1) + K[..., -1]
+    det = _product(K[..., -1], across)
+    for i in range(weights.shape[1] - 1):
+        sine = _squared_sine(angle[:, i, None] - angle[:, :i], roll[:, i, None] + roll[:, :i])
+        det = det + _product(K[..., i, None], _product(K[..., :i], sine)).sum(axis=-1)
+    up = (along[0] > 0) | (across[0] > 0) | (along_k[0] > 0)
+    down = (along[1] < 0) | (across[1] < 0) | (along_k[1] < 0)
+    definite, saddle = det[0] > 0, det[1] < 0
     plus = np.where(definite & up, 2, np.where(up | saddle, 1, 0))
     return plus, np.where(definite & down, 2, np.where(down | saddle, 1, 0))
+
+
+def _terms(
+    view: View, weights: np.ndarray, nearest: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the intervals of K (2, B, k), the angles from t_k, and the rolls, (B, k)."""
+    t = np.take_along_axis(view.column, nearest[..., None], axis=1)[:, 0]
+    cosine = np.einsum("bnk,bk->bn", view.column, t)
+    sine = np.einsum("bnk,bk->bn", view.column, np.cross(view.u, t))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ends = np.stack([weights / view.most, weights / view.least])
+    ends = np.where(weights == 0, 0.0, ends)
+    return np.sort(ends, axis=0), np.arctan2(sine, cosine), view.roll
+
+
+def _squared_sine(angle: np.ndarray, off: np.ndarray) -> np.ndarray:
+    """Return the interval of sin^2 of angles known up to ``off``, (2, ...)."""
+    least = np.abs((angle + 0.5 * np.pi) % np.pi - 0.5 * np.pi)
+    ends = np.stack([np.maximum(least - off, 0.0), np.minimum(least + off, 0.5 * np.pi)])
+    found: np.ndarray = np.sin(ends) ** 2
+    return found
+
+
+def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Return the interval of the product of intervals (2, ...); no times infinity is no."""
+    with np.errstate(invalid="ignore"):
+        every = np.stack(np.broadcast_arrays(a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]))
+    every = np.where(np.isnan(every), 0.0, every)
+    return np.stack([every.min(axis=0), every.max(axis=0)])

@@ -110,9 +110,9 @@ def inspect(array: CmgArray, delta: Any, progress: Callable[[float], None] | Non
     )
     report(0.1)
     pieces = self_motion(array, array.momentum(angles), through=angles)
-    report(0.9)
     at = np.where(np.asarray(array.h0) > 0, angles, 0.0)
     here = int(np.argmin([piece.distance(at) for piece in pieces]))
+    report(1.0)
     return State(
         delta=angles,
         momentum=np.asarray(array.momentum(angles)),

@@ -118,10 +118,9 @@ def _best(
     fewer = array if len(working) == array.n else _kept(array, working)
     unit, momenta = float(array.mean_momentum), there.momenta
     h = (momenta - array.torque_axes @ array.momentum_bias) / unit
-    search = Search(torque_climb.climber(fewer, method), h, _possible(array, h), there.mirrored)
-    search.run(report)
-    reached = search.value > -np.inf
-    angles, good = _polished(fewer, search.best[reached], momenta.reshape(-1, array.m)[reached])
+    climber = torque_climb.climber(fewer, method)
+    found, reached = Search(climber, h, _possible(array, h), there.mirrored).best(report)
+    angles, good = _polished(fewer, found[reached], momenta.reshape(-1, array.m)[reached])
     delta = np.full((len(reached), array.n), np.nan)
     which = np.flatnonzero(reached)[good]
     delta[which] = 0.0
@@ -137,8 +136,7 @@ def _possible(array: CmgArray, h: np.ndarray) -> np.ndarray:
     """Return which momenta over their unit are not shown to be beyond the convex hull."""
     found = rings(array)
     u = np.random.default_rng(0).normal(size=(_DIRECTIONS, array.m))
-    possible: np.ndarray = (h @ u.T <= found.support(u) * (1 + 1e-12)).all(axis=-1)
-    return possible
+    return np.all(h @ u.T <= found.support(u) * (1 + 1e-12), axis=-1)
 
 
 def _polished(

@@ -84,10 +84,13 @@ def optimal(at: State, limits: np.ndarray) -> list[Bound]:
 
 
 def _facet(at: State, limits: np.ndarray, members: tuple[int, ...]) -> Bound:
-    """Return a facet's bound: with D = sum_k l_k |a_k . c| and v = a sum of l_k a_k, D = c . v,
+    """Return the bound of the facet with normal c to its members' columns.
 
-    d f = dc . (v / D - c / |c|^2)  for its members,   -l_k sign(a_k . c) h_k . c / D  for others.
-    """  # fmt: skip
+    With s_k = l_k sign(a_k . c), v = sum_k s_k a_k and D = c . v its slope is
+
+        for others    -s_k h_k . c / D
+        for members   c' . (v / D - c / |c|^2),   c' the normal with -h_k for a_k
+    """
     a = at.columns
     normal = _turned(a[members[0]], a[members[-1]])
     others = [k for k in range(len(a)) if k not in members]

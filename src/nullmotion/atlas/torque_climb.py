@@ -27,7 +27,7 @@ from nullmotion.atlas import torque_bounds
 from nullmotion.atlas.torque_bounds import Bound, State
 from nullmotion.compile import compile_function
 
-Stages = tuple[tuple[float, int], ...]  # p, and steps with it
+Stages = tuple[tuple[float, int], ...]  # sharpness p, and steps with it
 
 METHODS = {"pseudo-inverse": torque_bounds.pseudo_inverse, "optimal": torque_bounds.optimal}
 HELD = 1e-9  # miss that counts as none, over the mean momentum
@@ -84,17 +84,12 @@ class Climber:
         move, smooth, least = _ascent(at, bounds, sharpness, damping)
         return delta, _shortened(move, _ALONG), smooth, least, miss
 
-    def climbed(self, delta: np.ndarray, h: np.ndarray, stages: Stages) -> Step:
-        """Return angles (B, n) moved to momenta (B, m), and up the torque capability there."""
+    def climbed(self, delta: np.ndarray, h: np.ndarray, sharpness: float, steps: int) -> Step:
+        """Return angles (B, n), B > 0, moved to momenta (B, m) and up F by steps of null motion."""
         count = -(-len(delta) // _LANES)
-        if count > 1:
-            pairs = zip(np.array_split(delta, count), np.array_split(h, count), strict=True)
-            parts = [self.climbed(d, k, stages) for d, k in pairs]
-            return Step(*(np.concatenate(column) for column in zip(*parts, strict=True)))
-        for sharpness, steps in stages:
-            found = self._climbed(delta, h, np.full(len(delta), sharpness), steps)
-            delta = found.delta
-        return found
+        pairs = zip(np.array_split(delta, count), np.array_split(h, count), strict=True)
+        parts = [self._climbed(d, k, np.full(len(d), sharpness), steps) for d, k in pairs]
+        return Step(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
     def _climbed(self, delta: np.ndarray, h: np.ndarray, sharpness: np.ndarray, steps: int) -> Step:
         damping = np.ones(len(delta))
@@ -120,9 +115,7 @@ def _chosen(good: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.where(good[:, None] if a.ndim > 1 else good, a, b)
 
 
-def _ascent(
-    at: State, bounds: list[Bound], sharpness: Any, damping: Any
-) -> tuple[Any, Any, Any]:
+def _ascent(at: State, bounds: list[Bound], sharpness: Any, damping: Any) -> tuple[Any, Any, Any]:
     """Return the step of null motion (n,), F and the least bound; source."""
     least = reduce(ops.minimum, [b.value for b in bounds])
     raw = [np.exp(sharpness * (least - b.value)) for b in bounds]
@@ -135,7 +128,9 @@ def _ascent(
     matrix = np.zeros((n, n), dtype=object)
     for i in range(n):
         for j in range(i + 1):
-            matrix[i, j] = matrix[j, i] = sum(x[i] * y[j] for x, y in zip(heavy, spread, strict=True))
+            matrix[i, j] = matrix[j, i] = sum(
+                x[i] * y[j] for x, y in zip(heavy, spread, strict=True)
+            )
     matrix = _across(at, _across(at, matrix).T)
     for i in range(n):
         matrix[i, i] = matrix[i, i] + damping
@@ -153,7 +148,7 @@ def _shortened(step: Any, longest: float) -> Any:
 
 
 def _solved(matrix: Any, b: Any) -> Any:
-    """Return M^-1 b for a symmetric positive definite M = L D L^T, of which the lower half is read."""
+    """Return M^-1 b by M = L D L^T, M symmetric and positive definite; its lower half is read."""
     n = len(b)
     L, D, y = np.zeros((n, n), dtype=object), [0.0] * n, list(b)
     for j in range(n):

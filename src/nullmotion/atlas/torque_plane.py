@@ -15,6 +15,7 @@ from nullmotion.errors import InputError
 LEAST, MOST = 3, 501
 _MARGIN = 1.02  # of the grid around what is within reach
 _TURNS = 2001  # planes that are tried to bound a section
+_LEAST_SIDE = 0.01  # of a grid, over the longer one
 _NONE = 1e-12  # over the mean momentum
 
 
@@ -59,12 +60,14 @@ def plane(array: CmgArray, normal: Any, offset: Any, resolution: Any) -> Plane:
     bias, found = array.torque_axes @ array.momentum_bias, rings(array)
     basis, across = _frame(array, normal)
     far = _distance(array, normal, offset, across, found, bias)
-    lean = far - across @ bias  # of the plane from the bias
-    middle = basis @ bias
-    half = found.unit * np.array([_extent(found, e, across, lean / found.unit) for e in basis])
-    half = _MARGIN * np.maximum(half, 0.01 * half.max(initial=found.unit))
+    lean = (far - float(across @ bias)) / found.unit  # from the bias
+    mirrored = abs(lean) <= _NONE
+    ends = found.unit * np.array([_extent(found, e, across, lean) for e in basis])
+    middle = basis @ bias + (0.0 if mirrored else ends @ [0.5, 0.5])
+    half = 0.5 * (ends[:, 1] - ends[:, 0])
+    half = _MARGIN * np.maximum(half, _LEAST_SIDE * half.max(initial=found.unit))
     x, y = (c + h * np.linspace(-1, 1, int(resolution)) for c, h in zip(middle, half, strict=True))
-    return Plane(basis, far * across, x, y, bool(abs(lean) <= _NONE * found.unit))
+    return Plane(basis, far * across, x, y, mirrored)
 
 
 def _frame(array: CmgArray, normal: Any) -> tuple[np.ndarray, np.ndarray]:
@@ -97,13 +100,13 @@ def _distance(
     return float(offset) / length
 
 
-def _extent(found: Rings, e: np.ndarray, across: np.ndarray, lean: float) -> float:
-    """Return a bound of |h . e| on a section of the reachable momenta, in their unit.
+def _extent(found: Rings, e: np.ndarray, across: np.ndarray, lean: float) -> tuple[float, float]:
+    """Return bounds of h . e on a section of the reachable momenta, in their unit.
 
-    By duality max {h . e : h . n = d, h in hull R} = min over t of S(e - t n) + t d: any t bounds it.
-    The section is as far in the direction -e as the opposite one is in e: both are taken.
+    By duality the greatest h . e with h . n = d in the convex hull of R is the least of
+    S(e - t n) + t d over all t. Any t bounds it.
     """
     angle = np.linspace(-0.5 * np.pi, 0.5 * np.pi, _TURNS + 2)[1:-1, None]
     t = np.tan(angle) * across.any()
     bounds = [found.support(s * e - t * across) + t[:, 0] * lean for s in (1, -1)]
-    return float(max(b.min() for b in bounds))
+    return -float(bounds[1].min()), float(bounds[0].min())

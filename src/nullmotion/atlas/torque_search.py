@@ -1,184 +1,162 @@
 """The greatest torque capability over all null motion, for all momenta of a grid together.
 
-Every momentum climbs from several starts of its own, a few from many. What is best for a
-momentum is then tried on its neighbours, far ones first: the set of the best angles is made of few
-smooth pieces, so that one good start finds a whole piece.
+Every momentum climbs from starts of its own. What it finds is then tried on the momenta around
+it, far ones first: maxima come in branches that are smooth over momentum space, and one good start
+finds a whole branch.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from nullmotion.atlas.torque_climb import HELD, Climber, Stages
+from nullmotion.atlas.torque_climb import Climber, Stages
+from nullmotion.atlas.torque_pool import Pool
 from nullmotion.atlas.torque_starts import Starts, drawn
 
-_ROUGH: Stages = ((4.0, 5), (16.0, 4), (64.0, 4))
-_SHORT: Stages = ((64.0, 3), (256.0, 3))
-_FINE: Stages = ((256.0, 4), (1024.0, 6), (4096.0, 8))
-_STAYING: Stages = ((1.0, 0),) * 16  # steps to the momentum alone
-_OWN, _TOGETHER = 16, 4  # starts of each momentum, and how many of them at a time
-_MANY, _STRIDE = 64, 3  # starts of every third momentum of every third row
-_RESCUE = 12  # starts of either kind for a momentum that is not reached
-_JUMPS = (8, 4, 2, 1)  # cells
-_SWEEPS = 20
-_ROUNDS, _TRIES = 3, 4
-_SHAKES=(.15,.3,.6,1.2)
-_ALIKE = 0.1
-_MARGIN = 6.0
-_LOW = 10.
+_ROUGH: Stages = ((4.0, 5), (16.0, 4), (64.0, 4), (256.0, 4), (256.0, 0))
+_SHORT: Stages = ((16.0, 3), (64.0, 3), (256.0, 4), (256.0, 0))
+_FINE: Stages = ((256.0, 4), (1024.0, 6), (4096.0, 8), (4096.0, 0))
+_BACK: Stages = ((1.0, 0),) * 16  # a step to the momentum each, and none of null motion
+_STARTS = 100_000  # of all momenta together
+_LEAST, _MOST = 16, 64  # of one momentum
+_TOGETHER = 4  # of a momentum's starts at a time
+_AGAIN = 0.5  # starts around the best, over the others
+_AWAY = np.array([0.2, 0.4, 0.8, 1.6])[:, None]  # rad; how far around
+_LOST = 12  # starts of either kind for a momentum that is not reached
+_JUMPS = (4, 2, 1)  # cells
+_SWEEPS = 6
 _CLOSE = 1e-6  # miss over the mean momentum up to which a climb counts
-_GAIN = 1e-3  # share of the torque capability that is worth telling the neighbours
-_AROUND = ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (-1, -1), (1, -1), (-1, 1))
+_MARGIN = 2.0  # at sharpness p a climb may be this over p (in the logarithm) behind, and win
+_BEHIND = 0.1  # and this much, to be second or third
+_HOPELESS = 0.3  # far behind already where it comes from
+_SAME = 0.15  # rad; angles this close to known ones lead to the same maximum
+_FINAL = 0.02  # behind the best: may win by the last steps
+_AROUND = ((0, 1), (0, -1), (1, 0), (-1, 0))
 
 Report = Callable[[float], None]
 
 
 class Search:
-    """The best angles found so far on a grid.
+    """A grid of momenta with the best angles found so far.
 
     Attributes:
-        best: Gimbal angles [rad], (N, n).
-        value: Logarithm of their torque capability, -inf where no angles are found, (N,).
+        pool: What is found; see `best`.
     """
 
     def __init__(
-        self, climber: Climber, momenta: np.ndarray, inside: np.ndarray, mirrored: bool
+        self, climber: Climber, momenta: np.ndarray, possible: np.ndarray, mirrored: bool
     ) -> None:
         """Take a grid.
 
         Args:
             climber: Of the array.
             momenta: Over the mean momentum, without bias, (rows, columns, m).
-            inside: Momenta that may be within reach, (rows, columns).
+            possible: Momenta that may be within reach, (rows, columns).
             mirrored: Whether the grid is its own mirror image: h to -h, delta to delta + pi.
         """
-        self.climber, self.shape, self.mirrored = climber, momenta.shape[:2], mirrored
+        self.climber, self.shape = climber, momenta.shape[:2]
         self.h = momenta.reshape(-1, climber.m)
-        self.size = len(self.h)
-        self.best, self.value = np.zeros((self.size, climber.n)), np.full(self.size, -np.inf)
-        half = (self.size + 1) // 2 if mirrored else self.size
-        self.todo = np.flatnonzero(inside.ravel()[:half])
-        self.fresh = np.zeros(self.size, bool)
-        self.rng = np.random.default_rng(1)
+        self.pool = Pool(len(self.h), climber.n, mirrored)
+        half = (len(self.h) + 1) // 2 if mirrored else len(self.h)
+        self.todo = np.flatnonzero(possible.ravel()[:half])
+        self._rng = np.random.default_rng(20240608)
 
-    def run(self, report: Report) -> None:
-        """Look for the best angles."""
+    def best(self, report: Report) -> tuple[np.ndarray, np.ndarray]:
+        """Return the best angles (N, n) [rad], and whether there are any, (N,)."""
         starts = drawn(self.climber)
-        for share in self._own(starts):
-            report(0.4 * share)
-        self._spread()
-        report(0.6)
-        self._rescue(starts)
-        self._few(starts)
-        report(0.75)
-        self._spread()
-        self._settle()
-        for _ in range(_ROUNDS):
-            self._shake()
-            self._settle()
-        report(0.9)
-        self._improve(_FINE)
-        self.fresh[:] = self.value > -np.inf
-        self._settle()
-        self._improve(_FINE[1:])
-
-    def _own(self, starts: Starts) -> Iterator[float]:
-        """Climb from starts of each momentum's own."""
-        angles = starts.near(self.h[self.todo], _OWN)
-        for k in range(0, _OWN, _TOGETHER):
+        own = int(np.clip(_STARTS / max(len(self.todo), 1), _LEAST, _MOST))
+        angles = starts.near(self.h[self.todo], own)
+        for k in range(0, own, _TOGETHER):
             self._climb(self.todo, angles[:, k : k + _TOGETHER], _ROUGH)
-            yield (k + _TOGETHER) / _OWN
+            report(0.3 * k / own)
+        self._look_for_lost(starts)
+        for k, jump in enumerate(_JUMPS):
+            self._sweep(jump, self.pool.value > -np.inf)
+            report(0.3 + 0.1 * (k + 1))
+        self._settle()
+        report(0.7)
+        self._climb_again(int(_AGAIN * own))
+        report(0.8)
+        self._settle()
+        report(0.9)
+        self._finish()
+        return self.pool.delta[0], self.pool.reached
 
-    def _few(self, starts: Starts) -> None:
-        row, column = np.divmod(self.todo, self.shape[1])
-        few = self.todo[(row % _STRIDE == 0) & (column % _STRIDE == 0)]
-        angles = starts.near(self.h[few], _MANY)
-        for k in range(0, _MANY, _OWN):
-            self._climb(few, angles[:, k : k + _OWN], _ROUGH)
+    def _reached(self) -> np.ndarray:
+        there: np.ndarray = self.todo[self.pool.reached[self.todo]]
+        return there
 
-    def _shake(self) -> None:
-        """Climb again from around the best angles: neighbouring maxima are many."""
-        reached = self.todo[self.value[self.todo] > -np.inf]
-        best = self.best[reached, None]
-        sizes = np.resize(_SHAKES, _TRIES)[:, None]
-        angles = best + sizes * self.rng.normal(size=(len(best), _TRIES, best.shape[2]))
-        self._climb(reached, angles, _ROUGH)
-
-    def _rescue(self, starts: Starts) -> None:
-        """Look longer for momenta that are not reached: from samples and reached ones."""
-        left, there = self.todo[self.value[self.todo] == -np.inf], np.flatnonzero(self.value > -np.inf)
-        if len(left) == 0:
+    def _look_for_lost(self, starts: Starts) -> None:
+        """Look longer for momenta that are not reached, from samples and from reached ones."""
+        lost = self.todo[~self.pool.reached[self.todo]]
+        there = np.flatnonzero(self.pool.reached)
+        if len(lost) == 0:
             return
-        angles = starts.near(self.h[left], _RESCUE)
-        if len(there) >= _RESCUE:
-            near = cKDTree(self.h[there]).query(self.h[left], _RESCUE)[1]
-            angles = np.concatenate([angles, self.best[there[near]]], axis=1)
-        self._climb(left, angles, _STAYING)
+        angles = starts.near(self.h[lost], _LOST)
+        if len(there) >= _LOST:
+            near = cKDTree(self.h[there]).query(self.h[lost], _LOST)[1]
+            angles = np.concatenate([angles, self.pool.delta[0, there[near]]], axis=1)
+        self._climb(lost, angles, _BACK)
 
-    def _spread(self) -> None:
-        """Try all best angles on neighbours, far ones first."""
-        for jump in _JUMPS:
-            self._sweep(jump, self.value > -np.inf)
+    def _climb_again(self, count: int) -> None:
+        """Climb from around the best angles."""
+        there = self._reached()
+        for _ in range(0, count, _TOGETHER):
+            best = self.pool.delta[0, there, None]
+            noise = self._rng.normal(size=(len(there), _TOGETHER, self.climber.n))
+            self._climb(there, best + _AWAY * noise, _ROUGH)
 
     def _settle(self) -> None:
         """Tell neighbours what is new until nothing is."""
         for _ in range(_SWEEPS):
-            if not self.fresh.any():
+            told = self.pool.fresh.copy()
+            if not told.any():
                 break
-            told = self.fresh.copy()
-            self.fresh[:] = False
+            self.pool.fresh[:] = False
             self._sweep(1, told)
 
     def _sweep(self, jump: int, told: np.ndarray) -> None:
-        """Try the best angles of marked momenta on those some cells away."""
+        """Try angles that are marked (places, N) on the momenta some cells away."""
         row, column = np.divmod(self.todo, self.shape[1])
         for down, right in _AROUND:
             r, c = row + jump * down, column + jump * right
             there = (r >= 0) & (r < self.shape[0]) & (c >= 0) & (c < self.shape[1])
-            source = np.where(there, r * self.shape[1] + c, 0)
-            there &= told[source]
-            there &= self._unlike(source, self.todo)
-            self._climb(self.todo[there], self.best[source[there], None], _SHORT)
+            target = self.todo[there]
+            source = (r * self.shape[1] + c)[there]
+            for place in range(len(told)):
+                self._try(target, source, place, told[place, source])
 
-    def _unlike(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        """Return whether the best angles of momenta a and b are more than a step apart."""
-        away = np.abs(np.sin(0.5 * (self.best[a] - self.best[b]))).max(axis=1)
-        unlike: np.ndarray = (away > 0.5 * _ALIKE) | (self.value[b] == -np.inf)
-        return unlike
-
-    def _improve(self, stages: Stages) -> None:
-        reached = self.todo[self.value[self.todo] > -np.inf]
-        self._climb(reached, self.best[reached, None], stages)
+    def _try(self, target: np.ndarray, source: np.ndarray, place: int, told: np.ndarray) -> None:
+        """Climb at momenta (B,) from what others (B,) have in a place, if it is not known."""
+        value = self.pool.value[place, source]
+        use = told & (value > -np.inf) & (value > self.pool.value[0, target] - _HOPELESS)
+        target, delta = target[use], self.pool.delta[place, source[use]]
+        new = self.pool.distance(target, delta).min(axis=0) > _SAME
+        self._climb(target[new], delta[new, None], _SHORT)
 
     def _climb(self, which: np.ndarray, angles: np.ndarray, stages: Stages) -> None:
-        """Climb from angles (B, S, n) of momenta (B,), and keep the best."""
-        if len(which) == 0:
-            return
+        """Climb from angles (B, S, n) at momenta (B,), and keep what is worth it."""
         tries, n = angles.shape[1:]
-        owner = np.repeat(np.arange(len(which)), tries)
-        best, delta = self.value[which], angles.reshape(-1, n)
+        owner, turn = np.repeat(which, tries), np.tile(np.arange(tries), len(which))
+        delta, value = angles.reshape(-1, n), np.zeros(len(owner))
         for sharpness, steps in stages:
             if len(owner) == 0:
                 return
-            found = self.climber.climbed(delta, self.h[which[owner]], ((sharpness, steps),))
-            kept = found.least > best[owner] - _MARGIN / sharpness
-            owner, delta, value = owner[kept], found.delta[kept], found.least[kept]
-            good = found.miss[kept] < _CLOSE
-        order = np.argsort(-np.where(good, value, -np.inf), kind="stable")
-        first, place = np.unique(owner[order], return_index=True)
-        top = order[place]
-        self._keep(which[first], delta[top], np.where(good[top], value[top], -np.inf))
+            found = self.climber.climbed(delta, self.h[owner], sharpness, steps)
+            least = self.pool.value[0, owner] - _MARGIN / sharpness - _BEHIND
+            kept = found.least > least
+            owner, turn, delta = owner[kept], turn[kept], found.delta[kept]
+            value = np.where(found.miss < _CLOSE, found.least, -np.inf)[kept]
+        for k in range(tries):
+            mine = turn == k
+            self.pool.keep(owner[mine], delta[mine], value[mine])
 
-    def _keep(self, which: np.ndarray, delta: np.ndarray, value: np.ndarray) -> None:
-        gain = np.where(value > -np.inf, value, 0.0) - self.value[which]
-        better = (value > -np.inf) & (gain > 0)
-        which, delta, value = which[better], delta[better], value[better]
-        pairs = [(which, delta)]
-        if self.mirrored:
-            pairs.append((self.size - 1 - which, delta + np.pi))
-        for place, angles in pairs:
-            self.best[place], self.value[place] = angles, value
-            self.fresh[place] |= gain[better] > _GAIN
+    def _finish(self) -> None:
+        """Climb to the top from all that may win."""
+        there = self._reached()
+        for delta, value in zip(self.pool.delta.copy(), self.pool.value.copy(), strict=True):
+            close = there[value[there] > self.pool.value[0, there] - _FINAL]
+            self._climb(close, delta[close, None], _FINE)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -35,6 +36,7 @@ class Starts:
         return found
 
 
+@lru_cache(maxsize=4)
 def drawn(climber: Climber) -> Starts:
     """Return random angles of an array and, turned by half a turn, their mirror images."""
     rng = np.random.default_rng(_SEED)

@@ -67,24 +67,11 @@ def atlas_page(
         _history(charts, run) if run is not None else Markup(""),
         _file(text),
     ]
-    head = join(headline, _links(atlas, run is not None, bool(text)))
+    head = join(headline, page.links(parts))
     made = page.versions(*([run] if run is not None else []))
     pairs = zip(atlas.extras(), atlas_numbers.extras(), strict=True)
     style, script = ("".join(pair) for pair in pairs)
     return page.write(path, page.document(title, [head, *parts], charts, made, style, script))
-
-
-def _links(atlas: Atlas, flown: bool, text: bool) -> Markup:
-    """Return the way to each section."""
-    there = (
-        ("atlas", "Pictures", atlas.scene is not None),
-        ("torque", "Torque capability", atlas.has_maps),
-        ("numbers", "Numbers", True),
-        ("history", "Over time", flown),
-        ("file", "Array file", text),
-    )
-    links = [tag("a", name, href=f"#{key}") for key, name, shown in there if shown]
-    return tag("nav", join(*links), class_="links", aria_label="Sections")
 
 
 def _file(text: str) -> Markup:

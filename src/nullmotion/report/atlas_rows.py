@@ -66,7 +66,7 @@ def radius_rows(radii: Radii, unit: float) -> list[Number]:
 def failure_rows(found: Analysis) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Return head and rows of what is left when a CMG fails; CMGs count from 1."""
     head = ("Failed CMG", "Omnidirectional", "Outer surface", "Impassable from", "Guaranteed")
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for first in sorted({one.like for one in found.failures}):
         alike = [one for one in found.failures if one.like == first]
         left = alike[0].radii

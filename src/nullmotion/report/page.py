@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
+import re
 from collections.abc import Sequence
 from functools import cache
 from importlib.resources import files
@@ -18,6 +19,8 @@ from nullmotion import __version__
 from nullmotion.errors import NullmotionError
 from nullmotion.report.charts import Charts
 from nullmotion.report.markup import Markup, join, tag, text
+
+_SECTION = re.compile(r'<section id="([\w-]+)"[^>]*><h2[^>]*>(.*?)</h2>')
 
 
 def document(
@@ -56,6 +59,13 @@ def section(title: str, *parts: object, id: str) -> Markup:
     return tag(
         "section", tag("h2", title, id=f"{id}-title"), *parts, id=id, aria_labelledby=f"{id}-title"
     )
+
+
+def links(parts: Sequence[str]) -> Markup:
+    """Return the way to each section among parts of a page."""
+    found = [hit for part in parts for hit in _SECTION.findall(part)]
+    there = [tag("a", Markup(name), href=f"#{key}") for key, name in found]
+    return tag("nav", join(*there), class_="links", aria_label="Sections")
 
 
 def details(summary: str, content: Markup) -> Markup:
