@@ -55,9 +55,29 @@ def states(quick: bool) -> list[Row]:
     ]
 
 
+def sizes(quick: bool) -> list[Row]:
+    """What sizing asks: the largest ball, the volume, the torque that null motion can keep."""
+    array, made = nm.layouts.pyramid(skew=np.arcsin(0.8)), []
+    begin = time.perf_counter()
+    ball = atlas.omnidirectional(array, 0.002 if quick else 2e-4)
+    seconds = time.perf_counter() - begin
+    note = f"{ball.lower:.5f} to {ball.upper:.5f} N m s, {ball.basis}"
+    made.append(Row("omnidirectional momentum of a pyramid", seconds, "s", note=note))
+    made.append(Row("its bounds, (upper - lower) / upper", ball.gap, "", at_most=0.005))
+    for what, asked in (
+        ("volume of its reachable momenta", lambda: atlas.volume(array, 0.3 if quick else 0.05)),
+        ("nearest impassable singularity", lambda: atlas.nearest_impassable(array)),
+        ("torque map", lambda: atlas.torque_map(array, resolution=21 if quick else 81)),
+    ):
+        begin = time.perf_counter()
+        asked()
+        made.append(Row(what, time.perf_counter() - begin, "s"))
+    return made
+
+
 def rows(quick: bool) -> list[Row]:
     """Measure everything."""
-    return [*surfaces(quick), *states(quick)]
+    return [*surfaces(quick), *states(quick), *sizes(quick)]
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 
 import accuracy
+import atlas
 import guarantees
 import latency
 import lookahead
@@ -56,6 +57,7 @@ def measure(quick: bool) -> tuple[list[Row], str]:
         "Torque capability and certificates": guarantees.rows(quick),
         "Looking ahead, one core": [*lookahead.rows(quick), *lookahead_triangle.rows(quick)],
         "Startup of variable-speed CMGs": vscmg.rows(quick),
+        "Singularity atlas": atlas.rows(quick),
         "Accuracy": accuracy.rows(quick),
     }
     everything = []

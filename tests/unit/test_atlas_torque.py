@@ -35,6 +35,9 @@ def planar(h0: list[float], **fields) -> nm.CmgArray:
     return nm.CmgArray([[0, 0, 1]] * len(h0), [[1, 0, 0]] * len(h0), h0, **fields)
 
 
+FOUR, FIVE, PLANAR = custom(1, 4), custom(2, 5), planar([1.0, 0.7, 1.4], rate_limit=[1, 2, 0.7])
+
+
 def limits_of(array: nm.CmgArray) -> np.ndarray:
     return np.where(np.isfinite(array.rate_limit), array.rate_limit, 1.0)
 
@@ -135,7 +138,7 @@ def check_against_brute(
 
 @pytest.mark.parametrize(
     ("array", "method"),
-    [(PYRAMID, "pseudo-inverse"), (planar([1.0, 0.7, 1.4], rate_limit=[1, 2, 0.7]), "optimal")],
+    [(PYRAMID, "pseudo-inverse"), (PLANAR, "optimal")],
 )
 def test_against_brute_force(array: nm.CmgArray, method: str) -> None:
     check_against_brute(array, method, 600, 2)
@@ -147,7 +150,7 @@ def test_against_brute_force(array: nm.CmgArray, method: str) -> None:
     ("array", "normal", "offset"),
     [
         (PYRAMID, [1, 2, -1], 2.0),
-        (custom(1, 4), None, 0.3),
+        (FOUR, None, 0.3),
         (custom(2, 4, False), [1, 0, 0], 0.0),
         (custom(3, 5), [0, 1, 1], 0.2),
         (custom(4, 6), None, 0.0),
@@ -221,10 +224,14 @@ def test_too_few_cmgs_have_no_torque() -> None:
 
 @pytest.mark.parametrize(
     ("array", "normal", "offset"),
-    [(custom(5, 3), None, 0.0), (custom(2, 4), [0, 1, 0.3], 0.5), (custom(7, 3), [1, 0, 0], 0.4)],
+    [
+        (custom(7, 3), [1, 0, 0], 0.4),
+        pytest.param(custom(5, 3), None, 0.0, marks=pytest.mark.slow),
+        pytest.param(custom(2, 4), [0, 1, 0.3], 0.5, marks=pytest.mark.slow),
+    ],
 )
 def test_what_is_not_reached_scipy_does_not_reach(array, normal, offset: float) -> None:
-    made = atlas.torque_map(array, normal, offset, 25)
+    made = atlas.torque_map(array, normal, offset, 15)
     there = check(made, array)
     rng = np.random.default_rng(1)
     beside = np.zeros_like(there)
@@ -238,6 +245,7 @@ def test_what_is_not_reached_scipy_does_not_reach(array, normal, offset: float) 
             assert np.abs(found.fun).max() > 1e-6
 
 
+@pytest.mark.slow
 def test_all_of_the_largest_ball_is_reached() -> None:
     array = nm.layouts.pyramid(skew=np.arcsin(0.8))
     ball = atlas.omnidirectional(array, 2e-3)
@@ -248,8 +256,8 @@ def test_all_of_the_largest_ball_is_reached() -> None:
 
 @pytest.mark.parametrize("method", METHODS)
 def test_opposite_momenta_have_opposite_angles(method: str) -> None:
-    array = custom(1, 4).altered(momentum_bias=np.array([0.3, -0.1, 0.4]))
-    made = atlas.torque_map(array, None, 0.4, 20, method)
+    array = FOUR.altered(momentum_bias=np.array([0.3, -0.1, 0.4]))
+    made = atlas.torque_map(array, None, 0.4, 10, method)
     assert np.isfinite(made.capability).any()
     assert made.capability == pytest.approx(made.capability[::-1, ::-1], rel=1e-9, nan_ok=True)
     turned = np.abs(np.cos(0.5 * (made.delta - made.delta[::-1, ::-1])))
@@ -257,7 +265,7 @@ def test_opposite_momenta_have_opposite_angles(method: str) -> None:
 
 
 def test_the_pyramid_is_alike_from_four_sides() -> None:
-    made = atlas.torque_map(PYRAMID, resolution=21)
+    made = atlas.torque_map(PYRAMID, resolution=15)
     turned = made.capability.T[:, ::-1]
     assert (np.isnan(made.capability) == np.isnan(turned)).all()
     assert made.capability == pytest.approx(turned, rel=3e-3, abs=1e-3, nan_ok=True)
@@ -276,15 +284,14 @@ def test_the_plane_is_the_one_asked_for() -> None:
     assert shown.basis.tolist() == [[1, 0, 0], [0, 1, 0]] and (shown.origin == 0).all()
 
 
-@pytest.mark.parametrize("seed", [1, 2])
-def test_the_grid_covers_the_section(seed: int) -> None:
-    """Angles of random momenta on the plane, by SciPy, lie within the grid."""
-    array, normal = custom(seed, 4), np.array([0.3, 1.0, -0.5])
-    made = atlas.torque_map(array, normal, 1.2, 3)
-    rng = np.random.default_rng(seed)
-    for start in rng.uniform(-np.pi, np.pi, (60, 4)):
-        found = least_squares(lambda x: [array.momentum(x) @ normal - 1.2], start)
-        place = made.basis @ array.momentum(found.x)
+def test_the_grid_covers_the_section() -> None:
+    """Random momenta on the plane, found by SciPy, lie within the grid."""
+    normal = np.array([0.3, 1.0, -0.5])
+    made = atlas.torque_map(FOUR, normal, 1.2, 3)
+    rng = np.random.default_rng(1)
+    for start in rng.uniform(-np.pi, np.pi, (30, 4)):
+        found = least_squares(lambda x: [FOUR.momentum(x) @ normal - 1.2], start)
+        place = made.basis @ FOUR.momentum(found.x)
         assert made.x[0] <= place[0] <= made.x[-1] and made.y[0] <= place[1] <= made.y[-1]
 
 
@@ -293,18 +300,21 @@ def test_stopped_wheels_stay_where_they_are() -> None:
     idle = nm.CmgArray(
         PYRAMID.gimbal_axes, PYRAMID.spin_axes, [1.0, 0.0, 1.0, 2.0], [2.0, 0.5, 1.0, 1.0]
     )
-    made = atlas.torque_map(idle, None, 0.2, 15)
+    made = atlas.torque_map(idle, None, 0.2, 9)
     there = check(made, idle)
     assert there.any() and (made.delta[there][:, 1] == 0).all()
-    fewer = atlas.torque_map(idle.without(1), None, 0.2, 15)
+    fewer = atlas.torque_map(idle.without(1), None, 0.2, 9)
     assert made.capability == pytest.approx(fewer.capability, rel=1e-6, nan_ok=True)
 
 
 def test_no_rate_limit_is_one_radian_per_second() -> None:
-    free, one = nm.layouts.pyramid(h0=2.0), nm.layouts.pyramid(h0=2.0, rate_limit=1.0)
-    a, b = (atlas.torque_map(array, resolution=7) for array in (free, one))
+    free = planar([2.0, 1.0, 1.0])
+    a, b = (
+        atlas.torque_map(array, resolution=7)
+        for array in (free, free.altered(rate_limit=np.ones(3)))
+    )
     assert a.capability == pytest.approx(b.capability, nan_ok=True)
-    some = nm.CmgArray(PYRAMID.gimbal_axes, PYRAMID.spin_axes, 1.0, [1.0, np.inf, 2.0, 1.0])
+    some = free.altered(rate_limit=np.array([1.0, np.inf, 0.5]))
     check(atlas.torque_map(some, resolution=7, method="optimal"), some)
 
 
@@ -338,7 +348,7 @@ def test_progress_grows_to_one_and_may_interrupt() -> None:
         (lambda: atlas.torque_map(PYRAMID, resolution=10_000), "resolution"),
         (lambda: atlas.torque_map(PYRAMID, method="local-gradient"), "method"),
         (lambda: atlas.torque_map(PYRAMID.altered(torque_axes=np.eye(3)[:1])), "array"),
-        (lambda: atlas.surface_torque(PYRAMID, atlas.surfaces(custom(1, 5), 50)[0]), "surface"),
+        (lambda: atlas.surface_torque(PYRAMID, atlas.surfaces(FIVE, 50)[0]), "surface"),
         (lambda: atlas.surface_torque(PYRAMID, atlas.surfaces(PYRAMID, 50)[0], "all"), "measure"),
     ],
 )
@@ -348,7 +358,7 @@ def test_bad_input_is_refused(call: Callable[[], object], key: str) -> None:
     assert error.value.key == key
 
 
-@pytest.mark.parametrize("array", [custom(1, 4), custom(2, 5), planar([1.0, 0.7, 1.4])])
+@pytest.mark.parametrize("array", [FOUR, FIVE, PLANAR])
 @pytest.mark.parametrize("method", METHODS)
 def test_slopes_of_the_bounds(array: nm.CmgArray, method: str) -> None:
     spin = array.rotor_momenta(np.zeros(array.n))
@@ -358,7 +368,7 @@ def test_slopes_of_the_bounds(array: nm.CmgArray, method: str) -> None:
     def bounds(delta: np.ndarray) -> list[torque_bounds.Bound]:
         return METHODS[method](torque_bounds.state(spin, torque, delta), limits)
 
-    delta = np.random.default_rng(5).uniform(-np.pi, np.pi, array.n)
+    delta = np.random.default_rng(8).uniform(-np.pi, np.pi, array.n)
     found = bounds(delta)
     expected = np.log(BOUNDS[method](array, delta))
     assert [b.value for b in found] == pytest.approx(expected, abs=1e-6)
@@ -390,9 +400,8 @@ def test_torque_left_on_a_surface(array: nm.CmgArray) -> None:
 
 def test_torque_left_in_a_plane() -> None:
     """Where a planar array is singular, all columns are along one line across u."""
-    array = planar([1.0, 0.7, 1.4], rate_limit=[1.0, 2.0, 0.7])
+    array, sizes = PLANAR, np.asarray(PLANAR.h0)
     surface = atlas.surfaces(array, 60)[1]
-    sizes = np.asarray(array.h0)
     sigma = np.linalg.norm(sizes) / array.mean_momentum
     assert atlas.surface_torque(array, surface) == pytest.approx(np.full(len(surface.u), sigma))
     best = sizes @ array.rate_limit

@@ -31,6 +31,7 @@ __all__ = ["Bounds", "max_momentum", "omnidirectional", "reach", "volume"]
 TOLERANCE = 2e-4
 _PROVEN = "proven"
 _OPEN = "proven, not closed within {} cells"
+_SPOTS = "; but for {} spots around reachable momenta, no longer than {:.2g} N m s"
 _FLAT = "proven: the reachable momenta have no volume"
 
 
@@ -153,6 +154,8 @@ def _checked(tolerance: float) -> float:
 
 def _from_radius(found: Rings, radius: Radius, budget: int, start: float) -> Bounds:
     basis = _PROVEN if radius.complete else _OPEN.format(budget)
+    if radius.spots:
+        basis += _SPOTS.format(radius.spots, radius.size * found.unit)
     return _bounds(found, radius.lower, radius.upper, radius.at, basis, start)
 
 

@@ -41,6 +41,11 @@ class Cells:
         return len(self.face)
 
     @property
+    def straight(self) -> bool:
+        """Whether all cells lie on one line through no momentum."""
+        return bool((self.box[:, :-1, 0] == self.box[:, :-1, 1]).all()) and len(self.frames) == 1
+
+    @property
     def nearest(self) -> np.ndarray:
         """Least |h| in each cell, (B,)."""
         return self.box[:, -1, 0]

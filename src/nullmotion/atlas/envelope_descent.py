@@ -68,7 +68,9 @@ def distances(rings: Rings, starts: Starts, h: np.ndarray) -> np.ndarray:
     return least
 
 
-def smallest_near(rings: Rings, starts: Starts, h: np.ndarray, margin: float) -> np.ndarray:
+def smallest_near(
+    rings: Rings, starts: Starts, h: np.ndarray, margin: float, straight: bool = False
+) -> np.ndarray:
     """Return a momentum (m,) as small as found from h on that stays ``margin`` away from R.
 
     Args:
@@ -76,14 +78,16 @@ def smallest_near(rings: Rings, starts: Starts, h: np.ndarray, margin: float) ->
         starts: Gives angles to start from for momenta.
         h: A momentum that is that far from R.
         margin: Least distance to R that counts as unreachable.
+        straight: Stay on the line through no momentum.
     """
+    smallest = _smallest_ahead if straight else _smallest
     known = np.zeros((0, len(rings.ring_of)))
     known, gap = _sheets(rings, starts, known, h)
     farthest = _FIRST * float(np.linalg.norm(h))
     for _ in range(_ROUNDS):
         if np.linalg.norm(gap, axis=1).min() <= margin:
             break  # it is reachable after all
-        step = _smallest(h, gap, 2 * margin, farthest) - h
+        step = smallest(h, gap, 2 * margin, farthest) - h
         length = float(np.linalg.norm(step))
         if length < 0.1 * margin or farthest < 0.1 * margin:
             break
@@ -112,10 +116,25 @@ def _sheets(
 
 def _smallest(h: np.ndarray, gap: np.ndarray, margin: float, near: float) -> np.ndarray:
     """Return the smallest y with u . y >= u . h(delta) + margin for the sheets that are near."""
-    size = np.linalg.norm(gap, axis=1)
-    close = size < np.maximum(near, 2 * size.min())
-    u = gap[close] / size[close, None]
-    least = u @ h - size[close] + margin
+    u, least = _bounds(h, gap, margin, near)
     rest = nnls(np.column_stack([u, least]).T, np.append(np.zeros(len(h)), 1.0))[0]
     y = np.column_stack([u, least]).T @ rest - np.append(np.zeros(len(h)), 1.0)
     return -y[:-1] / y[-1] if abs(y[-1]) > 1e-12 else h
+
+
+def _smallest_ahead(h: np.ndarray, gap: np.ndarray, margin: float, near: float) -> np.ndarray:
+    """Return the smallest such y along h."""
+    u, least = _bounds(h, gap, margin, near)
+    ahead = u @ h
+    share = least[ahead > 0] / ahead[ahead > 0]
+    return h * min(1.0, max(0.0, float(share.max(initial=0.0))))
+
+
+def _bounds(
+    h: np.ndarray, gap: np.ndarray, margin: float, near: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return u and the least u . y for the sheets that are near."""
+    size = np.linalg.norm(gap, axis=1)
+    close = size < np.maximum(near, 2 * size.min())
+    u = gap[close] / size[close, None]
+    return u, u @ h - size[close] + margin

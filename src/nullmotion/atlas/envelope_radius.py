@@ -22,10 +22,11 @@ Progress = Callable[[float], None]
 
 _BATCH = 4000  # cells looked at together
 _TRIED = 12  # centres at once that are tried to be unreachable
-_MARGINS = (0.1, 1.0)  # distance from R to look for, over tolerance and radius
+_MARGINS = (0.1, 1.0)  # distance from R to look for, over that room
 _HELD = 1e-9  # distance at which a momentum is reachable
-_FINEST = 0.25  # least edge of a cell around a reachable momentum, over radius and tolerance
+_FINEST = 0.25  # least edge of a cell around a reachable momentum, over the room between the bounds
 _FINER = 0.05  # of the others
+_FLOOR = 0.01  # radius below which the bounds are closed as for this one, over the largest
 BUDGET = 100_000  # cells
 
 
@@ -33,15 +34,21 @@ class Radius(NamedTuple):
     """Bounds of the least |h| that is unreachable, in units of the mean momentum.
 
     Attributes:
-        lower: All momenta up to it are reachable.
+        lower: All momenta up to it are reachable, but for what may hide in ``spots``.
         upper: A momentum of this size is not reachable, or R has no room beyond it.
         at: That momentum, (m,).
+        spots: Cells below ``lower`` that are not proven, no longer than ``size``: their centres
+            are reachable and so is all around them. Momenta all of whose angles are
+            singular may be reachable without any room for a proof.
+        size: Bound of their longest edges.
         complete: Whether the bounds are as close as they were asked to be.
     """
 
     lower: float
     upper: float
     at: np.ndarray
+    spots: int
+    size: float
     complete: bool
 
 
@@ -57,22 +64,21 @@ def least_unreachable(
 
     Args:
         rings: The array's rings.
-        cells: Cells that cover what is asked about.
-        start: A momentum beyond which there is none in its direction, (m,).
+        cells: Cells that cover what is asked about: a ball, or a line.
+        start: A momentum in them beyond which there is none in its direction, (m,).
         tolerance: Share of the radius up to which the bounds are closed.
         progress: Called with the share of the work that is done.
         budget: Number of cells after which the bounds are what they are.
     """
     origin = np.zeros(rings.m)
     if envelope_outside.proven(rings, origin[None, None])[0]:
-        return Radius(0.0, 0.0, origin, True)
-    search = _Search(Explorer(rings), start, tolerance)
+        return Radius(0.0, 0.0, origin, 0, 0.0, True)
+    search = _Search(Explorer(rings), start, tolerance, cells.straight)
     while len(cells) and search.looked_at < budget:
-        cells = cells.take(cells.nearest < min(search.upper * (1 - tolerance), search.stuck))
         order = np.argsort(cells.nearest, kind="stable")
-        first, rest = order[:_BATCH], order[_BATCH:]
-        if len(first):
-            cells = cells.take(rest).joined(search.step(cells.take(first)))
+        first, rest = cells.take(order[:_BATCH]), cells.take(order[_BATCH:])
+        cells = rest.joined(search.step(first))
+        cells = cells.take(cells.nearest < min(search.wanted, search.stuck))
         if progress is not None:
             progress(search.share(cells, budget))
     return search.result(cells)
@@ -81,11 +87,25 @@ def least_unreachable(
 class _Search:
     """The bounds so far."""
 
-    def __init__(self, explorer: Explorer, start: np.ndarray, tolerance: float) -> None:
-        self.explorer, self.tolerance = explorer, tolerance
+    def __init__(
+        self, explorer: Explorer, start: np.ndarray, tolerance: float, straight: bool
+    ) -> None:
+        self.explorer, self.straight = explorer, straight
         self.at, self.upper = start, float(np.linalg.norm(start))
+        self.tolerance, self.floor = tolerance, _FLOOR * self.upper
+        self.spots: list[float] = []
         self.stuck = np.inf  # least |h| of cells that are too small to be cut
         self.looked_at, self.done = 0, 0.0
+
+    @property
+    def room(self) -> float:
+        """How far apart the bounds may be."""
+        return self.tolerance * max(self.upper, self.floor)
+
+    @property
+    def wanted(self) -> float:
+        """The lower bound that would do."""
+        return self.upper - self.room
 
     def step(self, cells: Cells) -> Cells:
         """Return what is left of cells, cut."""
@@ -95,13 +115,13 @@ class _Search:
         left = ~found.inside
         open_cells, axis = found.cells.seeded(found.seeds).take(left), found.axis[left]
         reached = found.reached[left]
-        finest = self.tolerance * self.upper * np.where(reached, _FINEST, _FINER)
-        fine = open_cells.longest < finest
-        self.stuck = min(self.stuck, float(open_cells.nearest[fine].min(initial=np.inf)))
+        fine = open_cells.longest < self.room * np.where(reached, _FINEST, _FINER)
+        self.spots.extend(open_cells.nearest[fine & reached].tolist())
+        self.stuck = min(self.stuck, float(open_cells.nearest[fine & ~reached].min(initial=np.inf)))
         return open_cells.take(~fine).halves(axis[~fine])
 
     def _lower_the_upper(self, found: Findings[Cells]) -> None:
-        rings, starts = self.explorer.rings, self.explorer.starts
+        """Look for unreachable momenta that are smaller: around those that are not reached."""
         centres = found.cells.centres()
         size = np.linalg.norm(centres, axis=1)
         order = np.argsort(size)
@@ -109,22 +129,27 @@ class _Search:
             if size[i] < self.upper:
                 self.at, self.upper = centres[i], float(size[i])
         tried = order[~(found.inside | found.reached)[order]]
-        centres = centres[tried[size[tried] < self.upper * (1 - self.tolerance)][:_TRIED]]
-        away = distances(rings, starts, centres) if len(centres) else np.zeros(0)
-        if len(centres) == 0 or away.max() <= _HELD:
+        centres = centres[tried[size[tried] < self.wanted][:_TRIED]]
+        if len(centres):
+            self._descend(centres)
+
+    def _descend(self, centres: np.ndarray) -> None:
+        rings, starts = self.explorer.rings, self.explorer.starts
+        away = distances(rings, starts, centres)
+        if away.max() <= _HELD:
             return
         farthest, nearest = centres[away.argmax()], centres[np.flatnonzero(away > _HELD)[0]]
         for margin in _MARGINS:
-            room = margin * self.tolerance * self.upper
-            if self._unreachable(smallest_near(rings, starts, farthest, room)):
+            h = smallest_near(rings, starts, farthest, margin * self.room, self.straight)
+            if self._shown(h):
                 return
-        if not self._unreachable(nearest):
-            self._unreachable(farthest)
+        if not self._shown(nearest):
+            self._shown(farthest)
 
-    def _unreachable(self, h: np.ndarray) -> bool:
+    def _shown(self, h: np.ndarray) -> bool:
         """Lower the upper bound to |h| if it is less and h is unreachable for certain."""
         size = float(np.linalg.norm(h))
-        good = size < self.upper * (1 - 0.5 * self.tolerance)
+        good = size < self.upper - 0.5 * self.room
         good = good and bool(envelope_outside.proven(self.explorer.rings, h[None, None])[0])
         if good:
             self.at, self.upper = h, size
@@ -139,6 +164,8 @@ class _Search:
 
     def result(self, cells: Cells) -> Radius:
         """Return the bounds, given the cells that are left."""
-        wanted = self.upper * (1 - self.tolerance)
         left = min(self.stuck, float(cells.nearest.min(initial=np.inf)))
-        return Radius(min(wanted, left), self.upper, self.at, left >= wanted)
+        lower = max(0.0, min(self.wanted, left))
+        spots = sum(r < lower for r in self.spots)
+        shown = lower, self.upper, self.at
+        return Radius(*shown, spots, _FINEST * self.room, left >= self.wanted)

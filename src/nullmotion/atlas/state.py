@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,76 +13,10 @@ from nullmotion.array.capability import torque_capability
 from nullmotion.array.model import CmgArray
 from nullmotion.atlas.manifold import SINGULAR, Component, close_by, self_motion
 from nullmotion.atlas.passable import passable
+from nullmotion.atlas.state_record import State
 from nullmotion.singular_kind import TOLERANCE, Form, Kind, form, kind, saturating, working
 
 __all__ = ["State", "inspect"]
-
-
-@dataclass(frozen=True, eq=False)
-class State:
-    """What there is to know about gimbal angles.
-
-    Attributes:
-        delta: The gimbal angles [rad], (n,).
-        momentum: Their momentum, the array's bias included [N m s], (m,).
-        kind: ``regular``, ``saturation``, ``elliptic``, ``hyperbolic``, ``degenerate-hyperbolic``.
-        measures: Those of `nullmotion.singularity.measures`, of A over the mean momentum.
-        torque_capability: Torque that some law can give in every direction, over mean momentum
-            and least rate limit.
-        directions: Number of independent singular directions; 0 where regular.
-        u: A unit direction without torque, (m,); None where regular. Turned so that it is the
-            blocked one of an elliptic point and outwards in saturation; else h . u >= 0.
-        signs: Side of u that each rotor is on, (n,): 1, -1, or 0 for neither; None where regular.
-        passable: Whether null motion leads out of the singular set from right here.
-        passable_along: Whether the momentum can go on along u; None where regular.
-        passable_against: Whether it can go on along -u; None where regular.
-        components: Connected pieces of all gimbal angles of this momentum, with the best
-            measures on each: that of the best sigma_min first.
-        here: Which of them the state is on.
-        escapable: Whether null motion, however long, leads to where the array is not singular.
-        seconds: Time it took [s].
-    """
-
-    delta: np.ndarray
-    momentum: np.ndarray
-    kind: str
-    measures: Mapping[str, float]
-    torque_capability: float
-    directions: int
-    u: np.ndarray | None
-    signs: np.ndarray | None
-    passable: bool
-    passable_along: bool | None
-    passable_against: bool | None
-    components: tuple[Component, ...]
-    here: int
-    escapable: bool
-    seconds: float
-
-    @property
-    def component(self) -> Component:
-        """The piece of the self-motion set that the state is on."""
-        return self.components[self.here]
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return the state for a JSON file, angles in degrees."""
-        return {
-            "gimbal_deg": np.degrees(self.delta).tolist(),
-            "momentum_Nms": self.momentum.tolist(),
-            "kind": self.kind,
-            "measures": dict(self.measures),
-            "torque_capability": self.torque_capability,
-            "singular_directions": self.directions,
-            "u": None if self.u is None else self.u.tolist(),
-            "signs": None if self.signs is None else self.signs.tolist(),
-            "passable": self.passable,
-            "passable_along_u": self.passable_along,
-            "passable_against_u": self.passable_against,
-            "escapable": self.escapable,
-            "components": [_piece(c) for c in self.components],
-            "on_component": self.here,
-            "seconds": round(self.seconds, 3),
-        }
 
 
 def inspect(array: CmgArray, delta: Any, progress: Callable[[float], None] | None = None) -> State:
@@ -154,17 +87,3 @@ def _sides(array: CmgArray, delta: np.ndarray, u: np.ndarray) -> np.ndarray:
 def _escapable(what: Kind, piece: Component) -> bool:
     known = close_by(what)
     return piece.best["sigma_min"].value > SINGULAR if known is None else known
-
-
-def _piece(piece: Component) -> dict[str, Any]:
-    top = {
-        name: {"value": best.value, "gimbal_deg": np.degrees(best.delta).tolist()}
-        for name, best in piece.best.items()
-    }
-    return {
-        "best": top,
-        "curves": len(piece.curves),
-        "length_rad": float(piece.length) if piece.curves else None,
-        "crossings_deg": np.degrees(piece.crossings).tolist(),
-        "followed": piece.followed,
-    }

@@ -22,9 +22,9 @@ _FINE: Stages = ((256.0, 4), (1024.0, 6), (4096.0, 8), (4096.0, 0))
 _BACK: Stages = ((1.0, 0),) * 16  # a step to the momentum each, and none of null motion
 _STARTS = 100_000  # of all momenta together
 _LEAST, _MOST = 16, 64  # of one momentum
-_TOGETHER = 4  # of a momentum's starts at a time
+_TOGETHER = 10_000  # starts at a time, but for four of each momentum at least
 _AGAIN = 0.5  # starts around the best, over the others
-_AWAY = np.array([0.2, 0.4, 0.8, 1.6])[:, None]  # rad; how far around
+_AWAY = (0.2, 0.4, 0.8, 1.6)  # rad; how far around
 _LOST = 12  # starts of either kind for a momentum that is not reached
 _JUMPS = (4, 2, 1)  # cells
 _SWEEPS = 6
@@ -68,17 +68,16 @@ class Search:
         """Return the best angles (N, n) [rad], and whether there are any, (N,)."""
         starts = drawn(self.climber)
         own = int(np.clip(_STARTS / max(len(self.todo), 1), _LEAST, _MOST))
-        angles = starts.near(self.h[self.todo], own)
-        for k in range(0, own, _TOGETHER):
-            self._climb(self.todo, angles[:, k : k + _TOGETHER], _ROUGH)
-            report(0.3 * k / own)
+        together = int(np.clip(_TOGETHER / max(len(self.todo), 1), len(_AWAY), own))
+        self._climb_first(starts.near(self.h[self.todo], own), together, report)
         self._look_for_lost(starts)
         for k, jump in enumerate(_JUMPS):
             self._sweep(jump, self.pool.value > -np.inf)
             report(0.3 + 0.1 * (k + 1))
         self._settle()
         report(0.7)
-        self._climb_again(int(_AGAIN * own))
+        for _ in range(0, int(_AGAIN * own), together):
+            self._climb_again(together)
         report(0.8)
         self._settle()
         report(0.9)
@@ -88,6 +87,12 @@ class Search:
     def _reached(self) -> np.ndarray:
         there: np.ndarray = self.todo[self.pool.reached[self.todo]]
         return there
+
+    def _climb_first(self, angles: np.ndarray, together: int, report: Report) -> None:
+        """Climb from angles (B, S, n), some of each momentum's at a time."""
+        for k in range(0, angles.shape[1], together):
+            self._climb(self.todo, angles[:, k : k + together], _ROUGH)
+            report(0.3 * min(1.0, (k + together) / angles.shape[1]))
 
     def _look_for_lost(self, starts: Starts) -> None:
         """Look longer for momenta that are not reached, from samples and from reached ones."""
@@ -104,10 +109,10 @@ class Search:
     def _climb_again(self, count: int) -> None:
         """Climb from around the best angles."""
         there = self._reached()
-        for _ in range(0, count, _TOGETHER):
-            best = self.pool.delta[0, there, None]
-            noise = self._rng.normal(size=(len(there), _TOGETHER, self.climber.n))
-            self._climb(there, best + _AWAY * noise, _ROUGH)
+        best = self.pool.delta[0, there, None]
+        away = np.resize(_AWAY, count)[:, None]
+        noise = self._rng.normal(size=(len(there), count, self.climber.n))
+        self._climb(there, best + away * noise, _ROUGH)
 
     def _settle(self) -> None:
         """Tell neighbours what is new until nothing is."""
