@@ -156,6 +156,7 @@ def test_one_rotor_larger_than_the_others_leaves_a_hole_in_the_plane() -> None:
     assert atlas.self_motion(array, 0.99 * found.momentum) == ()
 
 
+@pytest.mark.slow
 def test_a_plane_of_tilted_cmgs_by_its_own_search() -> None:
     array = nm.CmgArray(
         [[0, 0, 1], [1, 0, 0], [0, 0.6, 0.8]],
@@ -192,6 +193,7 @@ def test_failed_cmgs_bias_and_turned_arrays() -> None:
         assert found.delta.shape == found.signs.shape == (array.n,)
 
 
+@pytest.mark.slow
 def test_two_cmgs_are_singular_everywhere() -> None:
     found = atlas.nearest_impassable(PYRAMID.without([0, 1]))
     assert found is not None

@@ -95,7 +95,7 @@ def check(array: nm.CmgArray, momentum: np.ndarray, dense: np.ndarray, gap: floa
     assert len(used) == len(found)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     ("array", "momentum"),
     [
@@ -178,6 +178,7 @@ def test_two_curves_meet_in_a_crossing(
     assert (np.bincount(crossing) == 4).all()
 
 
+@pytest.mark.slow
 def test_an_elliptic_state_is_alone() -> None:
     piece = atlas.component(PYRAMID, ELLIPTIC)
     assert piece.points == pytest.approx(ELLIPTIC[None], abs=1e-6)
@@ -237,7 +238,7 @@ def test_sampled_pieces(array: nm.CmgArray, momentum: list[float], count: int) -
         )
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     ("h0", "size"),
     [
@@ -265,6 +266,7 @@ def test_out_of_reach() -> None:
     assert atlas.self_motion(PYRAMID, [0, 0, 9.0]) == ()
 
 
+@pytest.mark.slow
 def test_stopped_wheels_stay_where_they_are() -> None:
     idle = nm.CmgArray(PYRAMID.gimbal_axes, PYRAMID.spin_axes, [1.0, 0.0, 1.0, 1.0])
     wide = atlas.self_motion(idle, [0.3, 0.2, 0.1])

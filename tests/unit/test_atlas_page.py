@@ -18,7 +18,8 @@ from nullmotion.plot import atlas_runs
 from nullmotion.plot.atlas import atlas_figure
 from nullmotion.plot.atlas_looks import LOOKS
 from nullmotion.plot.atlas_pieces import cut, pieces
-from nullmotion.plot.atlas_view import Ball, Motion, minority, scene, sign_name
+from nullmotion.plot.atlas_signs import minority, sign_name
+from nullmotion.plot.atlas_view import Ball, Motion, scene
 from nullmotion.report import page
 from nullmotion.report.atlas import Atlas
 from nullmotion.report.atlas_data import MOST_BYTES, block

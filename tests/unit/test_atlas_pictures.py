@@ -15,8 +15,9 @@ from nullmotion.plot.atlas import atlas_figure
 from nullmotion.plot.atlas_flats import flats
 from nullmotion.plot.atlas_maps import map_title, most_capability, plane_of
 from nullmotion.plot.atlas_pieces import own_places
+from nullmotion.plot.atlas_signs import minus, sign_name
 from nullmotion.plot.atlas_torque import SCALE, span, ticks, torque_left
-from nullmotion.plot.atlas_view import minus, scene, sign_name
+from nullmotion.plot.atlas_view import scene
 from nullmotion.report import page
 from nullmotion.report.atlas import Atlas
 from nullmotion.report.atlas_coded import angles

@@ -94,6 +94,7 @@ def test_the_elliptic_state_is_alone_and_others_of_its_momentum_are_not_singular
     assert first["value"] == pytest.approx(again["sqrt_det_AAT"])
 
 
+@pytest.mark.slow
 def test_the_singular_direction_is_the_blocked_one_inwards_or_outwards() -> None:
     array, rng = PYRAMID.without(0), np.random.default_rng(6)
     seen = []

@@ -12,10 +12,12 @@ from scipy.spatial import cKDTree
 from nullmotion.atlas import envelope_three
 from nullmotion.atlas.envelope_attempt import Attempt, Region
 from nullmotion.atlas.envelope_rings import Rings
-from nullmotion.atlas.envelope_search import Samples, sampled
+from nullmotion.atlas.envelope_search import Samples, sampled, solved
 
 _STARTS = 12  # of each kind for a momentum by itself
 _AMONG = 150  # samples for these
+_PATIENT = 30  # steps of Newton for a momentum by itself
+_HELD = 1e-7  # distance at which angles hold it, in units of the mean momentum
 _FRESH = 4  # starts from random samples
 _NEIGHBOURS = (0, 2, 5)  # proven cells near by whose angles are tried, by rank
 
@@ -76,6 +78,25 @@ class Explorer:
             return found
         near = cKDTree(self.known_h).query(h, _STARTS)[1]
         return np.concatenate([found, self.known_delta[near]], axis=1)
+
+    def held(self, points: np.ndarray, seeds: np.ndarray) -> np.ndarray:
+        """Return where angles are found for all of the momenta (B, p, m), (B,).
+
+        Args:
+            points: Momenta that are close together.
+            seeds: Angles (B, S, c) to begin with.
+        """
+        count, p, m = points.shape
+        goal = points.reshape(-1, m)
+        start = np.concatenate([np.repeat(seeds, p, axis=0), self.starts(goal)], axis=1)
+        each = np.repeat(goal, start.shape[1], axis=0)
+        delta = solved(self.rings, start.reshape(len(each), -1), each, _PATIENT)
+        miss = np.abs(self.rings.momentum(delta).reshape(*start.shape[:2], m) - goal[:, None])
+        found = miss.max(axis=2).min(axis=1) < _HELD
+        if envelope_three.applies(self.rings):
+            found |= envelope_three.judged(self.rings, goal[:, None]).inside
+        every: np.ndarray = found.reshape(count, p).all(axis=1)
+        return every
 
     def _ask(
         self,

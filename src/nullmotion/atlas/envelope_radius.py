@@ -26,6 +26,7 @@ _MARGINS = (0.1, 1.0)  # distance from R to look for, over that room
 _HELD = 1e-9  # distance at which a momentum is reachable
 _FINEST = 0.25  # least edge of a cell around a reachable momentum, over the room between the bounds
 _FINER = 0.05  # of the others
+_SPOTS = 200  # cells that may be left out
 _FLOOR = 0.01  # radius below which the bounds are closed as for this one, over the largest
 BUDGET = 100_000  # cells
 
@@ -37,9 +38,9 @@ class Radius(NamedTuple):
         lower: All momenta up to it are reachable, but for what may hide in ``spots``.
         upper: A momentum of this size is not reachable, or R has no room beyond it.
         at: That momentum, (m,).
-        spots: Cells below ``lower`` that are not proven, no longer than ``size``: their centres
-            are reachable and so is all around them. Momenta all of whose angles are
-            singular may be reachable without any room for a proof.
+        spots: Cells below ``lower`` that are not proven, no longer than ``size``: angles are
+            known for their centres and corners, and all around them is reachable. Momenta all of
+            whose angles are singular may be reachable without any room for a proof.
         size: Bound of their longest edges.
         complete: Whether the bounds are as close as they were asked to be.
     """
@@ -116,8 +117,13 @@ class _Search:
         open_cells, axis = found.cells.seeded(found.seeds).take(left), found.axis[left]
         reached = found.reached[left]
         fine = open_cells.longest < self.room * np.where(reached, _FINEST, _FINER)
-        self.spots.extend(open_cells.nearest[fine & reached].tolist())
-        self.stuck = min(self.stuck, float(open_cells.nearest[fine & ~reached].min(initial=np.inf)))
+        if fine.any():
+            small = open_cells.take(fine)
+            good = reached[fine] & self.explorer.held(small.hulls(), small.seeds)
+            self.spots.extend(small.nearest[good].tolist())
+            if len(self.spots) > _SPOTS:  # something thin may well be among them
+                self.stuck = min(self.stuck, *self.spots)
+            self.stuck = min(self.stuck, float(small.nearest[~good].min(initial=np.inf)))
         return open_cells.take(~fine).halves(axis[~fine])
 
     def _lower_the_upper(self, found: Findings[Cells]) -> None:

@@ -15,14 +15,11 @@ from nullmotion.atlas.envelope_cover import Explorer
 from nullmotion.atlas.envelope_frusta import Frusta
 from nullmotion.atlas.envelope_hull import Outside, cover
 from nullmotion.atlas.envelope_rings import Rings
-from nullmotion.atlas.envelope_search import solved
 
 BUDGET = 150_000  # cells
 _BATCH = 4000  # cells looked at together
 _SETS = 60  # of sectors for a cell that is tried to be proven unreachable
 _POINTS = 2000  # momenta of undecided cells that are looked for
-_STEPS = 30  # of Newton for each
-_HELD = 1e-7  # distance at which a momentum is held
 _SEED = 20240601
 _FACE = 64  # pieces of directions along a cube's edge for a convex R
 
@@ -113,15 +110,7 @@ def _reachable_part(explorer: Explorer, cells: Frusta) -> float:
     """Return the part of the cells' volume that is reachable, from random momenta."""
     if len(cells) == 0:
         return 0.0
-    rng, rings = np.random.default_rng(_SEED), explorer.rings
+    rng = np.random.default_rng(_SEED)
     chosen = rng.choice(len(cells), _POINTS, p=cells.share / cells.share.sum())
-    h = cells.take(chosen).points(rng)
-    starts = explorer.starts(h)
-    count = starts.shape[1]
-    goal = np.repeat(h, count, axis=0)
-    delta = solved(rings, starts.reshape(len(goal), -1), goal, _STEPS)
-    miss = np.abs(rings.momentum(delta) - goal).max(axis=1).reshape(-1, count).min(axis=1)
-    held = miss < _HELD
-    if envelope_three.applies(rings):
-        held |= envelope_three.judged(rings, h[:, None]).inside
-    return float(held.mean())
+    some = cells.take(chosen)
+    return float(explorer.held(some.points(rng)[:, None], some.seeds).mean())

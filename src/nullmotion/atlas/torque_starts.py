@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from nullmotion.atlas.torque_climb import Climber
 
 _SAMPLES = 40_000
-_KEPT = 0.7  # share of the samples that are kept, the most regular ones
+_CHOICE = 2  # samples around a momentum for each that is taken
 _SEED = 20240607
 
 
@@ -24,16 +24,20 @@ class Starts:
 
     Attributes:
         delta: Gimbal angles [rad], (S, n).
+        value: Logarithm of their torque capability, (S,).
         tree: Their momenta over the mean momentum.
     """
 
     delta: np.ndarray
+    value: np.ndarray
     tree: cKDTree
 
     def near(self, h: np.ndarray, count: int) -> np.ndarray:
-        """Return the angles of the momenta closest to given ones, (B, count, n)."""
-        found: np.ndarray = self.delta[self.tree.query(h, np.arange(1, count + 1))[1]]
-        return found
+        """Return angles of about given momenta (B, m), the most capable ones, (B, count, n)."""
+        found = self.tree.query(h, np.arange(1, _CHOICE * count + 1))[1]
+        order = np.argsort(-self.value[found], axis=1, kind="stable")[:, :count]
+        chosen: np.ndarray = self.delta[np.take_along_axis(found, order, axis=1)]
+        return chosen
 
 
 @lru_cache(maxsize=4)
@@ -44,11 +48,7 @@ def drawn(climber: Climber) -> Starts:
     u = rng.normal(size=(_SAMPLES // 2, climber.m))
     most = np.arctan2(u @ climber.torque.T, u @ climber.spin.T)
     delta[: len(u)] = most + rng.uniform(size=(len(u), 1)) * delta[: len(u)]
-    c, s = np.cos(delta), np.sin(delta)
-    A = c[:, None] * climber.torque.T - s[:, None] * climber.spin.T
-    kept = np.arange(len(delta))
-    if climber.n >= climber.m:
-        kept = np.argsort(-np.linalg.det(A @ A.mT), kind="stable")[: int(_KEPT * len(delta))]
-    h = c[kept] @ climber.spin + s[kept] @ climber.torque
+    h = np.cos(delta) @ climber.spin + np.sin(delta) @ climber.torque
+    value = climber.climbed(delta, h, 1.0, 0).least
     tree = cKDTree(np.concatenate([h, -h]))
-    return Starts(np.concatenate([delta[kept], delta[kept] + np.pi]), tree)
+    return Starts(np.concatenate([delta, delta + np.pi]), np.tile(value, 2), tree)

@@ -15,6 +15,7 @@ from nullmotion.array.model import CmgArray
 from nullmotion.atlas import Surface, patterns, surfaces
 from nullmotion.plot import palette
 from nullmotion.plot.atlas_flats import flats
+from nullmotion.plot.atlas_signs import minority
 
 if TYPE_CHECKING:
     from nullmotion.atlas.torque import TorqueMap
@@ -143,26 +144,3 @@ def scene(
         array, start, sheets, tuple(balls), tuple(motions), len(every) - len(signs), tuple(maps),
         flats(array),
     )  # fmt: skip
-
-
-def minority(signs: np.ndarray, working: np.ndarray) -> np.ndarray:
-    """Return sign patterns turned so that less than half are -1, few of them first, (k, n).
-
-    (u, epsilon) and (-u, -epsilon) are the same point.
-    """
-    minus = np.sum((signs < 0) & working, axis=1)
-    flip = 2 * minus > working.sum()
-    turned = np.where(flip[:, None] & working, -signs, signs)
-    order = np.lexsort((*(turned.T[::-1]), np.sum(turned < 0, axis=1)))
-    found: np.ndarray = turned[order]
-    return found
-
-
-def sign_name(signs: np.ndarray) -> str:
-    """Return a sign pattern as text, a place for each CMG; a ring for one at any angle."""
-    return "".join("○+−"[int(sign)] for sign in signs)
-
-
-def minus(signs: np.ndarray) -> int:
-    """Return how many minus signs a pattern has, or plus signs if they are fewer."""
-    return int(min(np.sum(signs < 0), np.sum(signs > 0)))

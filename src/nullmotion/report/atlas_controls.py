@@ -7,8 +7,9 @@ from collections import Counter
 import numpy as np
 
 from nullmotion.plot.atlas_looks import LOOKS
+from nullmotion.plot.atlas_signs import minus, sign_name
 from nullmotion.plot.atlas_torque import span, torque_left
-from nullmotion.plot.atlas_view import FEW_SHEETS, Scene, minus, sign_name
+from nullmotion.plot.atlas_view import FEW_SHEETS, Scene
 from nullmotion.report.atlas_parts import bar, group, ring, slider, swatch, toggle
 from nullmotion.report.markup import Markup, join, tag
 

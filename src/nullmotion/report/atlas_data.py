@@ -10,8 +10,9 @@ import numpy as np
 from nullmotion.plot import palette
 from nullmotion.plot.atlas_looks import LOOKS, Look
 from nullmotion.plot.atlas_pieces import own_places
+from nullmotion.plot.atlas_signs import minus, sign_name
 from nullmotion.plot.atlas_torque import SCALE, span, torque_left
-from nullmotion.plot.atlas_view import FEW_SHEETS, Ball, Motion, Scene, minus, sign_name
+from nullmotion.plot.atlas_view import FEW_SHEETS, Ball, Motion, Scene
 from nullmotion.plot.quantities import basis_names
 from nullmotion.report.atlas_coded import Coded, angles
 from nullmotion.report.atlas_map_data import map_data

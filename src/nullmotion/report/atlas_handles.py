@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from nullmotion.plot.atlas_view import Scene, sign_name
+from nullmotion.plot.atlas_signs import sign_name
+from nullmotion.plot.atlas_view import Scene
 from nullmotion.report.atlas_parts import slider
 from nullmotion.report.markup import Markup, join, tag
 
