@@ -112,9 +112,7 @@ def test_reach_ends_where_root_finding_ends(seed):
     assert (along.upper - along.lower) / along.upper < 5e-3
     for share in (0.5, 0.9, 0.999):
         assert held(array, share * along.lower * u, 150, rng)
-    assert not held(array, 1.001 * along.upper * u, 60, rng) or not held(
-        array, along.at, 60, rng
-    )
+    assert not held(array, 1.001 * along.upper * u, 60, rng) or not held(array, along.at, 60, rng)
 
 
 def test_closed_forms():

@@ -114,9 +114,7 @@ def test_failed_unequal_and_guaranteed(tmp_path, capsys):
         ("[aray]\n", (), "did you mean array"),
     ],
 )
-def test_bad_input_is_told_in_one_message(
-    array_file, tmp_path, capsys, change, arguments, message
-):
+def test_bad_input_is_told_in_one_message(array_file, tmp_path, capsys, change, arguments, message):
     array_file.write_text(ARRAY + change, encoding="utf-8")
     out = tmp_path / "kept"
     assert analyze(str(array_file), *arguments, "--out", str(out)) == 2

@@ -121,9 +121,7 @@ def test_what_has_no_guarantee_says_why():
     (row,) = guaranteed(nm.layouts.planar(n=5), levels=(9.0,))
     assert row.radius == 0 and row.proven_radius is None
     dead = nm.layouts.planar(n=5, h0=[1, 1, 0.0, 1, 1])
-    assert guaranteed(dead)[0].radius == pytest.approx(
-        guaranteed(nm.layouts.planar(n=4))[0].radius
-    )
+    assert guaranteed(dead)[0].radius == pytest.approx(guaranteed(nm.layouts.planar(n=4))[0].radius)
     with pytest.raises(InputError, match="torque_capability"):
         guaranteed(nm.layouts.planar(n=5), levels=(0.0,))
 

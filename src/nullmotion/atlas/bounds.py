@@ -15,8 +15,9 @@ class Bounds:
     Attributes:
         lower: Lower bound.
         upper: Upper bound.
-        at: Where the number is found, if that is a momentum [N m s], (m,): for a radius one that
-            is not reachable, or has no room beyond it; for a greatest momentum one of that size.
+        at: Where the number is found, if that is a momentum [N m s], along the torque axes and
+            without the array's bias, (m,): for a radius one that is not reachable, or has no
+            room beyond it; for a greatest momentum one of that size.
         estimate: Value between the bounds, where there is one.
         basis: What the bounds rest on.
         seconds: Time it took [s].
@@ -43,4 +44,6 @@ class Bounds:
         """Return the bounds for a JSON file."""
         at = None if self.at is None else [float(v) for v in self.at]
         found = {"lower": self.lower, "upper": self.upper, "at": at, "basis": self.basis}
+        if self.estimate is not None:
+            found["estimate"] = self.estimate
         return found | {"seconds": round(self.seconds, 3)}

@@ -2,8 +2,8 @@
 
 - outer surface: least |h| on the sheet of all plus signs (`outer`);
 - omnidirectional: radius of the largest ball of reachable momenta (`envelope`);
-- nearest impassable: least |h| of an internal singularity that null motion cannot leave
-  (`internal`): up to there the pseudo-inverse cannot stick for good;
+- nearest impassable: least |h| of an elliptic internal singularity (`internal`), where no null
+  motion exists and no law can obey a command along u: the pseudo-inverse sticks there;
 - guaranteed: up to which a constraint law gives a torque in every direction (`guaranteed`).
 
 All are about the array's bias.

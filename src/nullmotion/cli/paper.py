@@ -29,7 +29,7 @@ def paper(
         result = entry().run(target, progress, figures=figures)
     show(result)
     more = ", beyond.json" if result.beyond else ""
-    typer.echo(f"Results in {target} (tables.json, tables.md{more})")
+    typer.echo(f"Results in {target} (report.html, tables.json, tables.md{more})")
 
 
 def show(result: PaperResult) -> None:

@@ -75,6 +75,8 @@ class PaperResult:
         beyond: What the paper does not print, one row each; all have the same keys but for
             the details in tables of their own, which only ``beyond.json`` holds.
         note: What a reader of these rows should know.
+        citation: Where the paper appeared.
+        runs: Its runs by name, all on one array: what the page shows in momentum space.
     """
 
     name: str
@@ -83,19 +85,27 @@ class PaperResult:
     figures: list[Path] = field(default_factory=list)
     beyond: list[dict[str, Any]] = field(default_factory=list)
     note: str = ""
+    citation: str = ""
+    runs: dict[str, Any] = field(default_factory=dict)
 
     def counts(self) -> Counter[str]:
         """Return how many cells have each status."""
         return Counter(cell.status for cell in self.cells)
 
     def write(self, out: Path) -> None:
-        """Write ``tables.json``, ``beyond.json`` and ``tables.md``, each complete or not at all."""
+        """Write tables as JSON, Markdown and a page, each complete or not at all.
+
+        ``tables.json``, ``beyond.json``, ``tables.md`` and ``report.html``.
+        """
+        from nullmotion.report.paper import paper_report
+
         rows = [cell.as_row() for cell in self.cells]
         replace_text(out / "tables.json", json.dumps(rows, indent=1) + "\n")
         if self.beyond:
             text = json.dumps(self.beyond, indent=1, allow_nan=False)
             replace_text(out / "beyond.json", text + "\n")
         replace_text(out / "tables.md", self.markdown())
+        paper_report(out / "report.html", self.title, self.citation, rows, self.runs)
 
     def markdown(self) -> str:
         """Return all tables as Markdown."""

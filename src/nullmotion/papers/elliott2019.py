@@ -45,7 +45,9 @@ class Elliott2019(Paper):
         total = _COMPUTED + _SEED * (len(SEEDS) - 1) + _FIGURE * drawn.COUNT * figures
         done = counted(progress, total)
         work = Work(SEEDS).computed(done)
-        result = PaperResult(self.name, self.title, work.cells, note=comparison.NOTE)
+        result = PaperResult(
+            self.name, self.title, work.cells, note=comparison.NOTE, citation=self.citation
+        )
         result.beyond += work.beyond
         result.write(out)
         if figures:

@@ -41,7 +41,9 @@ class Elliott2019Rover(Paper):
         """Write ``tables.json``, ``tables.md``, ``beyond.json`` and ``figures/``."""
         done = _counted(progress, table4.COUNT + drawn.COUNT * figures)
         found = table4.steps(done)
-        result = PaperResult(self.name, self.title, cells(found), note=_NOTE)
+        result = PaperResult(
+            self.name, self.title, cells(found), note=_NOTE, citation=self.citation
+        )
         result.beyond = [step.beyond() for step in found.values()]
         result.write(out)
         if figures:

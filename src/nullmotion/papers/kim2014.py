@@ -42,7 +42,9 @@ class Kim2014(Paper):
         total = len(CASES) + beyond.kernels(given) + (drawn.COUNT if figures else 0)
         done = _counted(progress, total)
         flights = fly(done)
-        result = PaperResult(self.name, self.title, cells(flights), note=beyond.NOTE)
+        result = PaperResult(
+            self.name, self.title, cells(flights), note=beyond.NOTE, citation=self.citation
+        )
         others = beyond.fly(given, done)
         result.beyond = [beyond.row(*item) for item in others.items()]
         result.write(out)

@@ -127,7 +127,10 @@ class Mao2019(Paper):
         """Write ``tables.json``, ``tables.md``, ``figures/figure_07.png`` to ``figure_31.png``."""
         share = 0.2 if figures else 1.0
         runs = self.trajectories((lambda x: progress(share * x)) if progress else None)
-        result = PaperResult(self.name, self.title, tables(runs))
+        named = {told(*which): trajectory for which, trajectory in runs.items()}
+        result = PaperResult(
+            self.name, self.title, tables(runs), citation=self.citation, runs=named
+        )
         result.write(out)
         if figures:
             from nullmotion.plot import run_figure
@@ -144,8 +147,13 @@ class Mao2019(Paper):
 
 def caption(number: int, law: str, manoeuvre: str) -> str:
     """Return a figure's title."""
+    return f"Figure {number}: {told(law, manoeuvre)}, torque {list(TORQUES[manoeuvre])} N m"
+
+
+def told(law: str, manoeuvre: str) -> str:
+    """Return the name of a run."""
     what = "escape" if manoeuvre == "escape" else f"tau_d{manoeuvre}"
-    return f"Figure {number}: {TITLES[law]}, {what}, torque {list(TORQUES[manoeuvre])} N m"
+    return f"{TITLES[law]}, {what}"
 
 
 def tables(runs: Mapping[tuple[str, str], Trajectory]) -> list[Cell]:

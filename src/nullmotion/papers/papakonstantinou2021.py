@@ -57,7 +57,9 @@ class Papakonstantinou2021(Paper):
         done = counted(progress, len(runs) + len(every) + drawing)
 
         flights = fly(runs, done)
-        result = PaperResult(self.name, self.title, cells(runs, flights), note=beyond.NOTE)
+        result = PaperResult(
+            self.name, self.title, cells(runs, flights), note=beyond.NOTE, citation=self.citation
+        )
         for run in every:
             result.beyond += beyond.rows(run)
             done()

@@ -43,7 +43,10 @@ class Pereira2022(Paper):
         total = len(CASES) + len(BEYOND) + (drawn.COUNT if figures else 0)
         done = _counted(progress, total)
         flown = flights(CASES, done)
-        result = PaperResult(self.name, self.title, cells(flown), note=_NOTE)
+        result = PaperResult(
+            self.name, self.title, cells(flown), note=_NOTE, citation=self.citation
+        )
+        result.runs = {name: flight.run for name, flight in flown.items()}
         every = flown | flights(BEYOND, done)
         result.beyond = [flight.row(name) for name, flight in every.items()]
         result.write(out)

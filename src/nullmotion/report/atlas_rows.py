@@ -15,7 +15,7 @@ _UNIT = "N m s"
 _NOTES = {
     OUTER: "Sheet of all plus signs alone; it has holes, and is not the envelope",
     OMNI: "Largest ball of reachable momenta: up to it every |h| in every direction",
-    IMPASSABLE: "Null motion cannot leave it: the pseudo-inverse can stick from there on",
+    IMPASSABLE: "Elliptic: no null motion, and no law can go on along u; the pseudo-inverse sticks",
 }
 
 
