@@ -68,7 +68,7 @@ def _section(name: str, rows: Sequence[Mapping[str, Any]]) -> Markup:
     made = table(_HEAD, [_cells(row) for row in rows], title, numeric=(2, 3, 4), wide=True)
     good = sum(row["status"] in _GOOD for row in rows)
     printed = sum(row["status"] != "not printed" for row in rows)
-    summary = f"{good} of {printed} as printed" if printed else f"{len(rows)} values, none printed"
+    summary = f"{good} of {printed} as printed" if printed else f"{len(rows)} not printed"
     key = "".join(c if c.isalnum() else "-" for c in name)
     return page.section(title, page.details(summary, made), id=f"table-{key}")
 
