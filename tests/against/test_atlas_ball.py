@@ -88,7 +88,7 @@ def test_where_the_ball_ends_nothing_is_found(rng):
     assert held(PYRAMID, inward, 200, rng)
 
 
-@pytest.mark.sampled(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(8))
 def test_random_arrays_hold_what_is_inside_and_not_what_is_at_the_end(seed):
     rng = np.random.default_rng(seed)
@@ -101,7 +101,7 @@ def test_random_arrays_hold_what_is_inside_and_not_what_is_at_the_end(seed):
         assert not held(array, 1.0001 * ball.at, 60, rng)
 
 
-@pytest.mark.sampled(1)
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_reach_ends_where_root_finding_ends(seed):
     rng = np.random.default_rng(100 + seed)

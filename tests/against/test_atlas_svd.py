@@ -63,6 +63,7 @@ def test_every_point_is_singular_and_has_its_momentum(array: nm.CmgArray, seed: 
             assert momentum == pytest.approx(array.momentum(delta), abs=1e-13)
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(arrays(), st.integers(50, 400))
 def test_every_point_of_every_sheet_is_singular(array: nm.CmgArray, resolution: int) -> None:
@@ -84,6 +85,7 @@ def eigenvalues(array: nm.CmgArray, delta: np.ndarray, u: np.ndarray) -> np.ndar
     return np.linalg.eigvalsh(N.T @ E @ N)
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(arrays(), st.integers(0, 2**32 - 1))
 def test_types_are_those_of_the_form_on_the_null_space(array: nm.CmgArray, seed: int) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import time
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -56,10 +57,11 @@ def test_the_greatest_momentum_is_proven_and_held() -> None:
     assert h == pytest.approx(found.at, abs=1e-4)
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
-    "array, radius, greatest",
+    ("array", "radius", "greatest"),
     [
-        (nm.layouts.box90(), 2.0, 2 * np.sqrt(5.0)),
+        (nm.layouts.box90(), 2.0, 4.0),
         (nm.layouts.planar(n=5), 5.0, 5.0),
         (nm.layouts.triangle(), 3.0, 3.0),
         (nm.layouts.scissored_pairs(), 4.0, None),
@@ -95,7 +97,7 @@ def two_discs(circle: float, disc: float) -> float:
 
 
 @pytest.mark.parametrize(
-    "array, exact",
+    ("array", "exact"),
     [
         (nm.layouts.box90(), 32 * np.pi),
         (planar(1.0, 1.0), 4 * np.pi),
@@ -113,15 +115,20 @@ def test_volumes_in_closed_form(array: nm.CmgArray, exact: float) -> None:
 
 
 @pytest.mark.parametrize(
-    "circle, disc", [(0.5, 2.0), pytest.param(1.0, 1.0, marks=pytest.mark.slow)]
+    ("circle", "disc", "radius"),
+    [(0.5, 2.0, 0.5), pytest.param(1.0, 1.0, 0.0, marks=pytest.mark.slow)],
 )
-def test_a_circle_and_a_disc_in_closed_form(circle: float, disc: float) -> None:
-    array, exact = circle_and_disc(circle, disc), two_discs(circle, disc)
-    radius = circle if disc > circle else 0.0  # above the origin nothing is reachable if equal
-    found = omnidirectional(array, tolerance=0.01)
-    assert found.lower <= radius <= found.upper <= radius + 0.01
-    found = volume(array, tolerance=0.25)
-    assert found.lower <= exact <= found.upper and found.gap <= 0.25
+def test_the_radius_of_a_circle_and_a_disc(circle: float, disc: float, radius: float) -> None:
+    """As large as the disc the circle leaves no room above the origin, which is reachable."""
+    found = omnidirectional(circle_and_disc(circle, disc), tolerance=0.02)
+    assert found.lower <= radius <= found.upper <= radius + 0.02
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("circle", "disc"), [(0.5, 2.0), (1.0, 1.0), (1.5, 1.0)])
+def test_the_volume_of_a_circle_and_a_disc(circle: float, disc: float) -> None:
+    found, exact = volume(circle_and_disc(circle, disc), 0.2), two_discs(circle, disc)
+    assert found.lower <= exact <= found.upper and found.gap <= 0.2
     assert found.value == pytest.approx(exact, rel=0.01)
 
 
@@ -140,15 +147,17 @@ FAILED = {
 }
 
 
+@pytest.mark.slow
 def test_a_failed_cmg_counts_for_nothing_however_it_failed() -> None:
     """Its frozen momentum is bias, which is left out; by symmetry it does not matter which."""
-    radii = [omnidirectional(array, tolerance=0.01) for array in FAILED.values()]
+    radii = [omnidirectional(array, tolerance=0.05) for array in FAILED.values()]
     greatest = [max_momentum(array).value for array in FAILED.values()]
     assert greatest == pytest.approx([greatest[0]] * 4, rel=1e-7)
     assert max(r.lower for r in radii) <= min(r.upper for r in radii)
-    assert all(r.gap <= 0.011 for r in radii) and max(r.upper for r in radii) < 1.7
+    assert all(r.gap <= 0.051 for r in radii) and max(r.upper for r in radii) < 1.7
 
 
+@pytest.mark.slow
 def test_the_unit_and_the_frame_of_momentum_do_not_matter() -> None:
     array = nm.CmgArray(PYRAMID.gimbal_axes, PYRAMID.spin_axes, [1.0, 1.2, 0.7, 0.9])
     turn = Rotation.from_rotvec([0.3, -0.5, 0.9])
@@ -165,6 +174,7 @@ def test_the_unit_and_the_frame_of_momentum_do_not_matter() -> None:
     assert (again.lower, again.upper) == pytest.approx((2 * one.lower, 2 * one.upper), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_no_direction_reaches_less_than_the_ball(rng: np.random.Generator) -> None:
     ball = omnidirectional(PYRAMID, tolerance=0.01)
     assert ball.at is not None
@@ -186,9 +196,9 @@ def test_bounds_that_are_not_closed_say_so() -> None:
 @pytest.mark.parametrize("measure", [omnidirectional, volume])
 def test_progress_grows_to_the_end(measure: Callable[..., Any]) -> None:
     seen: list[float] = []
-    measure(PYRAMID, tolerance=0.2, progress=seen.append)
+    measure(PYRAMID, tolerance=0.4, progress=seen.append)
     assert len(seen) > 3 and seen[-1] == pytest.approx(1.0)
-    assert all(0 <= a <= b <= 1 for a, b in zip(seen[:-1], seen[1:], strict=True))
+    assert all(0 <= a <= b <= 1 for a, b in pairwise(seen))
 
 
 @pytest.mark.parametrize("measure", [omnidirectional, volume])
