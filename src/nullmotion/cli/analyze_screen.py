@@ -33,6 +33,7 @@ def _cells(row: Number) -> list[str]:
     from nullmotion.report.wording import number
 
     bounds = [number(value, 6) for value in (row.lower, row.upper)]
-    known = row.lower is not None and row.upper is not None
-    share = 0.5 * (row.lower + row.upper) / row.scale if known else None  # type: ignore[operator]
+    share = None
+    if row.lower is not None and row.upper is not None:
+        share = 0.5 * (row.lower + row.upper) / row.scale
     return [row.name, *bounds, row.unit, number(share), row.note]
