@@ -60,18 +60,17 @@ def judged(rings: Rings, hulls: np.ndarray) -> Verdict:
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     inside, outside = np.zeros(len(hulls), bool), np.zeros(len(hulls), bool)
     for i, j, k in _ORDERS:
-        left = np.flatnonzero(~(inside | outside))
         across = np.cross(normal[j], normal[k])
         size = np.linalg.norm(across)
-        if size < _OBLIQUE or len(left) == 0:
+        if size < _OBLIQUE:
             continue
         axes = np.stack([across / size, normal[k] / size, normal[j] / size])
         turning = rings.circles[i] @ axes.T  # (2, 3)
-        along = hulls[left] @ axes.T
         for way in (1.0, -1.0):
-            changed, none = _turned(turning, radius[[j, k]], along, way)
-            inside[left] |= changed
-            outside[left] |= none
+            left = np.flatnonzero(~(inside | outside))
+            if len(left):
+                verdict = _turned(turning, radius[[j, k]], hulls[left] @ axes.T, way)
+                inside[left], outside[left] = verdict
     return Verdict(inside, outside)
 
 
@@ -100,19 +99,9 @@ def _turned(
 
 
 def _step(
-    turning: Any,
-    radius: Any,
-    sag: Any,
-    turn: Any,
-    phase: Any,
-    low: Any,
-    high: Any,
-    last: Any,
-    changed: Any,
-    none: Any,
-    least: Any,
-    greatest: Any,
-) -> Any:
+    turning: Any, radius: Any, sag: Any, turn: Any,
+    phase: Any, low: Any, high: Any, last: Any, changed: Any, none: Any, least: Any, greatest: Any,
+) -> Any:  # fmt: skip
     """Return the state at the next angle of the grid; source.
 
     Args:
