@@ -83,13 +83,13 @@ def test_ten_million_random_states_find_nothing_against_it():
 @pytest.mark.slow
 def test_where_the_ball_ends_nothing_is_found(rng):
     ball = atlas.omnidirectional(PYRAMID)
-    assert not held(PYRAMID, ball.at, 120, rng)
+    assert not held(PYRAMID, ball.at, 60, rng)
     inward = ball.at * (1 - 4e-3)
     assert held(PYRAMID, inward, 200, rng)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(5))
 def test_random_arrays_hold_what_is_inside_and_not_what_is_at_the_end(seed):
     rng = np.random.default_rng(seed)
     array = random_array(rng, int(rng.integers(3, 8)))
@@ -102,7 +102,7 @@ def test_random_arrays_hold_what_is_inside_and_not_what_is_at_the_end(seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(3))
 def test_reach_ends_where_root_finding_ends(seed):
     rng = np.random.default_rng(100 + seed)
     array = PYRAMID if seed % 2 else random_array(rng, int(rng.integers(4, 7)))
@@ -146,7 +146,7 @@ def test_volume_of_two_crossed_discs():
 def test_volume_of_the_pyramid_by_random_momenta():
     found, rng = atlas.volume(PYRAMID), np.random.default_rng(4)
     side = atlas.max_momentum(PYRAMID).upper
-    h = rng.uniform(-side, side, (250, 3))
+    h = rng.uniform(-side, side, (120, 3))
     share = np.mean([np.linalg.norm(w) <= side and held(PYRAMID, w, 25, rng) for w in h])
     spread = 3 * np.sqrt(share * (1 - share) / len(h))
     volume = (2 * side) ** 3
