@@ -19,6 +19,8 @@ from nullmotion.rover.interrupt import interruptible
 from nullmotion.rover.path_cost import PlannedStep
 from nullmotion.rover.rover import peter
 
+pytestmark = pytest.mark.slow  # it simulates whole steps
+
 DISTANCE = 1 / np.sqrt(3)  # m, of a step of PETER
 
 

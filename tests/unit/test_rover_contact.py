@@ -32,6 +32,8 @@ from nullmotion.rover.polyhedron import NAMES
 from nullmotion.rover.step_model import step_model
 from nullmotion.rover.tracking import loop
 
+pytestmark = pytest.mark.slow  # it simulates whole steps
+
 STEEPEST = float(np.degrees(np.arctan(np.sqrt(2))))  # the paper's "55 degrees"
 INCLINES = (0.0, 15.0, 30.0, 45.0, STEEPEST)
 

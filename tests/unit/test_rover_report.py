@@ -28,6 +28,8 @@ from nullmotion.rover.step_model import step_model
 from nullmotion.rover.terrain import HeightField
 from nullmotion.rover.terrain_random import generated
 
+pytestmark = pytest.mark.slow  # it simulates whole steps
+
 EVIL = """<img src=x onerror="alert(1)"></script><script>alert('2')</script>&amp; $title"""
 QUICK = Settings(nodes=(30, 60), start_durations=(2.5,))
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
